@@ -1,0 +1,13 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""Cages, plane sections, blades and cuts, in NumPy and float64."""
+
+from .blade import Blade, BladePlane
+from .cage import Cage
+from .cut import Cut
+from .edit import CageEdit
+from .polygon_mesh import PolygonMesh
+from .triangulate import triangulate
+from .wall import Wall
+
+__all__ = ["Blade", "BladePlane", "Cage", "CageEdit", "Cut", "PolygonMesh", "Wall", "triangulate"]

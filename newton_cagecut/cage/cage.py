@@ -1,0 +1,251 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""Cages: closed polygon meshes around the volume that is cut.
+
+Section 3 of the paper calls this the cage; section 5.1 lets its faces be n-gons, planar in the rest state. Positions
+are in the rest frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+
+from . import intersection, validation
+from .face_triangles import triangulate_faces
+from .polygon_mesh import PolygonMesh
+from .wall import Wall, face_walls
+from .winding import winding_numbers
+
+
+class Cage:
+    """A closed, consistently oriented manifold of planar polygons; immutable."""
+
+    def __init__(self, vertices: np.ndarray, faces: Sequence[Sequence[int]], *, tolerance: float = 1e-6):
+        """Validate and build a cage.
+
+        Args:
+            vertices: Rest positions, shape (vertex_count, 3) [m].
+            faces: Loops of vertex ids, counterclockwise seen from outside.
+            tolerance: Length below which things coincide, relative to the diagonal of the bounding box.
+
+        Raises:
+            TypeError: If the vertices are not numbers or the faces not loops of integers.
+            ValueError: If the cage is not what the class promises; the text names the culprit.
+        """
+        positions = _as_vertices(vertices)
+        face_start, face_vertex = _as_loops(faces)
+        if not (np.isfinite(tolerance) and 0.0 < tolerance < 0.1):
+            raise ValueError(f"tolerance must lie between 0 and 0.1, got {tolerance}")
+        validation.check_loops(positions, face_start, face_vertex, simple=True)
+        self.tolerance = float(tolerance)
+        self.diameter = float(np.linalg.norm(positions.max(axis=0) - positions.min(axis=0)))
+        self.mesh = PolygonMesh(positions, face_start, face_vertex)
+        self._check_surface()
+        normals = self.mesh.face_area_vector / np.linalg.norm(self.mesh.face_area_vector, axis=1, keepdims=True)
+        validation.check_planarity(self.mesh, normals, self.length_tolerance)
+        self.walls: tuple[Wall, ...] = face_walls(positions, face_start, face_vertex, normals)
+        self.face_wall = np.arange(self.face_count)
+        self.face_side = np.zeros(self.face_count, dtype=np.int64)
+        self._check_crossings()
+        self._freeze()
+
+    @classmethod
+    def _assembled(
+        cls, base: Cage, mesh: PolygonMesh, walls: tuple[Wall, ...], face_wall: np.ndarray, face_side: np.ndarray
+    ) -> Cage:
+        """A cage that a cut made of ``base``, taken as it is."""
+        cage = cls.__new__(cls)
+        cage.tolerance = base.tolerance
+        cage.diameter = base.diameter
+        cage.mesh = mesh
+        cage.walls = walls
+        cage.face_wall = face_wall
+        cage.face_side = face_side
+        cage._freeze()
+        return cage
+
+    def _freeze(self) -> None:
+        mesh = self.mesh
+        for array in (mesh.vertices, mesh.face_start, mesh.face_vertex, self.face_wall, self.face_side):
+            array.setflags(write=False)
+
+    def __repr__(self) -> str:
+        counts = (self.vertex_count, self.face_count, self.component_count)
+        return "Cage(vertex_count={}, face_count={}, component_count={})".format(*counts)
+
+    @property
+    def dimension(self) -> int:
+        """Dimension of the space."""
+        return self.vertices.shape[1]
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """Rest positions, shape (vertex_count, 3) [m]."""
+        return self.mesh.vertices
+
+    @cached_property
+    def faces(self) -> tuple[tuple[int, ...], ...]:
+        """Loops of vertex ids, counterclockwise seen from outside; a slit's loop walks to its tip and back."""
+        return self.mesh.loops()
+
+    @property
+    def vertex_count(self) -> int:
+        """Number of vertices."""
+        return self.mesh.vertex_count
+
+    @property
+    def face_count(self) -> int:
+        """Number of faces."""
+        return self.mesh.face_count
+
+    @property
+    def length_tolerance(self) -> float:
+        """Length below which things coincide [m]."""
+        return self.tolerance * self.diameter
+
+    @property
+    def face_key(self) -> np.ndarray:
+        """``2 * wall + side`` of each face, shape (face_count,)."""
+        return 2 * self.face_wall + self.face_side
+
+    @property
+    def face_component(self) -> np.ndarray:
+        """Connected component of each face, shape (face_count,)."""
+        return self.mesh.face_component
+
+    @property
+    def vertex_component(self) -> np.ndarray:
+        """Connected component of each vertex, numbered by their lowest vertices, shape (vertex_count,)."""
+        return self.mesh.vertex_component
+
+    @property
+    def component_count(self) -> int:
+        """Number of connected components."""
+        return self.mesh.component_count
+
+    @property
+    def component_volumes(self) -> np.ndarray:
+        """Enclosed volume of each component, negative for a cavity, shape (component_count,) [m^3]."""
+        return self.mesh.component_volumes
+
+    @property
+    def volume(self) -> float:
+        """Enclosed volume [m^3]."""
+        return float(self.mesh.face_volume.sum())
+
+    @property
+    def euler_characteristic(self) -> int:
+        """Vertices minus edges plus faces."""
+        return self.vertex_count - self.mesh.edge_count + self.face_count
+
+    @cached_property
+    def corner_coordinates(self) -> np.ndarray:
+        """In-plane coordinates of every half-edge's origin on its face's wall, shape (half_edge_count, 2) [m].
+
+        The second axis is reversed on faces of side 1, so that all faces are counterclockwise.
+        """
+        owner = self.face_wall[self.mesh.face]
+        axes = np.array([wall.axes for wall in self.walls])[owner]
+        offset = self.vertices[self.mesh.face_vertex] - np.array([wall.origin for wall in self.walls])[owner]
+        coordinates = np.einsum("hij,hj->hi", axes, offset)
+        coordinates[:, 1] *= 1 - 2 * self.face_side[self.mesh.face]
+        return coordinates
+
+    @cached_property
+    def _triangulation(self) -> tuple[np.ndarray, np.ndarray]:
+        return triangulate_faces(self.mesh, self.corner_coordinates)
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """Triangles of the faces as vertex ids, shape (triangle_count, 3)."""
+        return self._triangulation[0]
+
+    @property
+    def triangle_face(self) -> np.ndarray:
+        """Face of each triangle, sorted, shape (triangle_count,)."""
+        return self._triangulation[1]
+
+    def validate(self) -> None:
+        """Check the cage again, slits and coincident sides of cuts being allowed.
+
+        Raises:
+            ValueError: If the cage is not a closed, oriented manifold of planar polygons around a positive volume.
+        """
+        validation.check_loops(self.vertices, self.mesh.face_start, self.mesh.face_vertex, simple=False)
+        validation.check_topology(self.mesh)
+        normals = np.array([wall.normal for wall in self.walls])[self.face_wall]
+        validation.check_planarity(self.mesh, normals, self.length_tolerance)
+        validation.check_volume(self.mesh)
+
+    def winding_numbers(self, points: np.ndarray) -> np.ndarray:
+        """Winding number of each point about each component.
+
+        Args:
+            points: Points, shape (point_count, 3) [m].
+
+        Returns:
+            Winding numbers, shape (point_count, component_count).
+        """
+        points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+        group = self.face_component[self.triangle_face]
+        return winding_numbers(points, self.vertices, self.triangles, group, self.component_count)
+
+    def contains(self, points: np.ndarray) -> np.ndarray:
+        """Whether points lie inside the cage.
+
+        Args:
+            points: Points, shape (point_count, 3) [m].
+
+        Returns:
+            True for the points inside, shape (point_count,).
+        """
+        return self.winding_numbers(points).sum(axis=1) > 0.5
+
+    def component_of(self, points: np.ndarray) -> np.ndarray:
+        """Component in which points lie.
+
+        Args:
+            points: Points, shape (point_count, 3) [m].
+
+        Returns:
+            Component of each point, -1 outside the cage, shape (point_count,).
+        """
+        number = self.winding_numbers(points)
+        volume = np.where((number > 0.5) & (self.component_volumes > 0.0), self.component_volumes, np.inf)
+        return np.where(number.sum(axis=1) > 0.5, volume.argmin(axis=1), -1)
+
+    def _check_surface(self) -> None:
+        if self.diameter == 0.0:
+            raise ValueError("all vertices of the cage coincide")
+        validation.check_topology(self.mesh)
+        validation.check_areas(self.mesh, self.length_tolerance)
+        validation.check_volume(self.mesh)
+
+    def _check_crossings(self) -> None:
+        intersection.check_simple_faces(self.mesh, self.corner_coordinates, self.length_tolerance)
+        intersection.check_face_pairs(self.mesh, self.triangles, self.triangle_face, self.length_tolerance)
+        intersection.check_nesting(self.vertices, self.vertex_component, self.component_volumes, self.winding_numbers)
+
+
+def _as_vertices(vertices: np.ndarray) -> np.ndarray:
+    try:
+        positions = np.array(vertices, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"vertices must be numbers of shape (vertex_count, 3): {error}") from None
+    if positions.ndim != 2 or positions.shape[1] != 3:
+        raise ValueError(f"vertices must have shape (vertex_count, 3), got {positions.shape}")
+    return positions
+
+
+def _as_loops(faces: Sequence[Sequence[int]]) -> tuple[np.ndarray, np.ndarray]:
+    """The faces as flat arrays: starts and vertex ids."""
+    loops = [np.asarray(loop) for loop in faces]
+    for i, loop in enumerate(loops):
+        if loop.ndim != 1 or (len(loop) and not np.issubdtype(loop.dtype, np.integer)):
+            raise TypeError(f"face {i} of the cage must be a sequence of integers, got {faces[i]!r}")
+    face_start = np.concatenate([[0], np.cumsum([len(loop) for loop in loops], dtype=np.int64)]).astype(np.int64)
+    face_vertex = np.concatenate([*loops, np.empty(0, dtype=np.int64)]).astype(np.int64)
+    return face_start, face_vertex

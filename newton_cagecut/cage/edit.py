@@ -1,0 +1,86 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""What one advance of a cut did to a cage.
+
+Section 5.2 of the paper lists what the weights' update has to know of a cut: faces being split, the sides of the cut,
+the newly swept polygon, vertices created or displaced.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .blade import BladePlane
+from .cage import Cage
+
+
+@dataclass(frozen=True, eq=False)
+class CageEdit:
+    """One step of a cut: the cage before and after, and how they differ."""
+
+    before: Cage
+    """The cage before the step."""
+    cage: Cage
+    """The cage after the step."""
+    wall: int
+    """Number of the cut's wall in ``cage.walls``."""
+    plane: BladePlane
+    """Plane of the cut."""
+    front: float
+    """Coordinate s of the blade in the plane [m]."""
+    depth: float
+    """Depth of the cut from where the blade first touches [m]."""
+    complete: bool
+    """Whether nothing is left to cut."""
+    swept: tuple[np.ndarray, ...]
+    """Polygons newly swept, counterclockwise about the plane's normal, each of shape (corner_count, 3) [m]."""
+    swept_triangles: np.ndarray
+    """The same as triangles, shape (triangle_count, 3, 3) [m]."""
+    created: np.ndarray
+    """Ids of the vertices that are new, shape (created_count,)."""
+    moved: np.ndarray
+    """Ids of the vertices that have moved, shape (moved_count,)."""
+    source_faces: np.ndarray
+    """For the created, then the moved vertices: a face of ``before`` that holds their position, shape (count,)."""
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether the step changed nothing."""
+        return self.cage is self.before
+
+    @cached_property
+    def _same(self) -> np.ndarray:
+        """Whether a face number stands for the same polygon before and after, shape (max face_count,)."""
+        old, new = self.before, self.cage
+        same = np.zeros(max(old.face_count, new.face_count), dtype=bool)
+        if self.is_empty:
+            same[:] = True
+            return same
+        count = min(old.face_count, new.face_count)
+        alike = (old.mesh.face_size[:count] == new.mesh.face_size[:count]) & (
+            old.face_key[:count] == new.face_key[:count]
+        )
+        half = np.flatnonzero(np.append(alike, np.zeros(new.face_count - count, dtype=bool))[new.mesh.face])
+        face = new.mesh.face[half]
+        vertex = new.mesh.face_vertex[half]
+        has_moved = np.zeros(new.vertex_count, dtype=bool)
+        has_moved[self.moved] = True
+        counterpart = old.mesh.face_vertex[half - new.mesh.face_start[face] + old.mesh.face_start[face]]
+        differs = (counterpart != vertex) | has_moved[vertex]
+        same[:count] = alike
+        same[face[differs]] = False
+        return same
+
+    @cached_property
+    def changed_faces(self) -> np.ndarray:
+        """Faces of ``cage`` that are new, differ or have a moved vertex, ascending, shape (changed_count,)."""
+        return np.flatnonzero(~self._same[: self.cage.face_count])
+
+    @cached_property
+    def changed_keys(self) -> np.ndarray:
+        """Keys of which some face was added, removed or changed, ascending, shape (key_count,)."""
+        before = np.flatnonzero(~self._same[: self.before.face_count])
+        return np.union1d(self.before.face_key[before], self.cage.face_key[self.changed_faces])

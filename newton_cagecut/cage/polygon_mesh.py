@@ -1,0 +1,165 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""Polygons as flat arrays with half-edges.
+
+Section 5.2 of the paper manages the topology of a cut with half-edges; this is that structure, shared by
+cages and by the embedded surface. Nothing in it loops over faces in Python.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+
+class PolygonMesh:
+    """Polygons over shared vertices, with their half-edges.
+
+    Half-edge ``h`` is a position of :attr:`face_vertex`: it starts at ``face_vertex[h]`` and ends at the next
+    vertex of the same loop.
+    """
+
+    def __init__(self, vertices: np.ndarray, face_start: np.ndarray, face_vertex: np.ndarray):
+        """Take over the arrays; nothing is copied or checked.
+
+        Args:
+            vertices: Positions, shape (vertex_count, 3) [m].
+            face_start: First half-edge of each face and the end of the last, shape (face_count + 1,).
+            face_vertex: Vertex at which each half-edge starts, shape (half_edge_count,).
+        """
+        self.vertices = vertices
+        self.face_start = face_start
+        self.face_vertex = face_vertex
+
+    @property
+    def vertex_count(self) -> int:
+        """Number of vertices."""
+        return len(self.vertices)
+
+    @property
+    def face_count(self) -> int:
+        """Number of faces."""
+        return len(self.face_start) - 1
+
+    @cached_property
+    def face_size(self) -> np.ndarray:
+        """Number of corners of each face, shape (face_count,)."""
+        return np.diff(self.face_start)
+
+    @cached_property
+    def face(self) -> np.ndarray:
+        """Face of each half-edge, shape (half_edge_count,)."""
+        return np.repeat(np.arange(self.face_count), self.face_size)
+
+    @cached_property
+    def next(self) -> np.ndarray:
+        """The half-edge that follows in the same loop, shape (half_edge_count,)."""
+        following = np.arange(1, len(self.face_vertex) + 1)
+        following[self.face_start[1:] - 1] = self.face_start[:-1]
+        return following
+
+    @cached_property
+    def destination(self) -> np.ndarray:
+        """Vertex at which each half-edge ends, shape (half_edge_count,)."""
+        return self.face_vertex[self.next]
+
+    @cached_property
+    def edge_key(self) -> np.ndarray:
+        """One number for each undirected edge, equal for its half-edges, shape (half_edge_count,)."""
+        low = np.minimum(self.face_vertex, self.destination).astype(np.int64)
+        high = np.maximum(self.face_vertex, self.destination).astype(np.int64)
+        return low * self.vertex_count + high
+
+    @cached_property
+    def twin(self) -> np.ndarray:
+        """The half-edge that runs back along the same edge, -1 where not just one does, shape (half_edge_count,)."""
+        order = np.argsort(self.edge_key, kind="stable")
+        key = self.edge_key[order]
+        twin = np.full(len(key), -1, dtype=np.int64)
+        same = np.concatenate([key[1:] == key[:-1], [False]])
+        before = np.concatenate([[False], same[:-1]])
+        first = np.flatnonzero(same & ~before & ~np.concatenate([same[1:], [False]]))
+        one, other = order[first], order[first + 1]
+        opposite = self.face_vertex[one] != self.face_vertex[other]
+        one, other = one[opposite], other[opposite]
+        twin[one], twin[other] = other, one
+        return twin
+
+    @cached_property
+    def edges(self) -> np.ndarray:
+        """Pairs of vertices that some half-edge joins, lower first, shape (pair_count, 2)."""
+        return np.stack(np.divmod(np.unique(self.edge_key), self.vertex_count), axis=1)
+
+    @cached_property
+    def edge_count(self) -> int:
+        """Number of undirected edges, half-edges without a twin counting as one each."""
+        return (len(self.twin) + int(np.count_nonzero(self.twin < 0))) // 2
+
+    @cached_property
+    def corner_offset(self) -> np.ndarray:
+        """Each corner relative to the first corner of its face, shape (half_edge_count, 3) [m]."""
+        return self.vertices[self.face_vertex] - self.vertices[self.face_vertex[self.face_start[:-1]]][self.face]
+
+    @cached_property
+    def face_area_vector(self) -> np.ndarray:
+        """Normal of each face times its area, shape (face_count, 3) [m^2]."""
+        offset = self.corner_offset
+        return 0.5 * np.add.reduceat(np.cross(offset, offset[self.next]), self.face_start[:-1], axis=0)
+
+    @cached_property
+    def face_volume(self) -> np.ndarray:
+        """Signed volume of the cone from the mean vertex over each face, shape (face_count,) [m^3]."""
+        first = self.vertices[self.face_vertex[self.face_start[:-1]]] - self.vertices.mean(axis=0)
+        return np.einsum("ij,ij->i", first, self.face_area_vector) / 3.0
+
+    @cached_property
+    def vertex_component(self) -> np.ndarray:
+        """Connected component of each vertex, numbered by their lowest vertices, shape (vertex_count,)."""
+        label = np.arange(self.vertex_count)
+        start, end = self.face_vertex, self.destination
+        while True:
+            lowest = np.minimum(label[start], label[end])
+            updated = label.copy()
+            np.minimum.at(updated, label[start], lowest)
+            np.minimum.at(updated, label[end], lowest)
+            while not np.array_equal(updated, updated[updated]):
+                updated = updated[updated]
+            updated = updated[label]
+            if np.array_equal(updated, label):
+                return np.unique(label, return_inverse=True)[1].reshape(-1)
+            label = updated
+
+    @cached_property
+    def face_component(self) -> np.ndarray:
+        """Connected component of each face, shape (face_count,)."""
+        return self.vertex_component[self.face_vertex[self.face_start[:-1]]]
+
+    @cached_property
+    def component_count(self) -> int:
+        """Number of connected components."""
+        return int(self.vertex_component.max()) + 1 if self.vertex_count else 0
+
+    @cached_property
+    def component_volumes(self) -> np.ndarray:
+        """Enclosed volume of each component, shape (component_count,) [m^3]."""
+        return np.bincount(self.face_component, weights=self.face_volume, minlength=self.component_count)
+
+    @cached_property
+    def fan(self) -> np.ndarray:
+        """Number of the fan of half-edges around a vertex that each half-edge starts, shape (half_edge_count,).
+
+        A manifold vertex has one fan. Only meaningful on a closed mesh.
+        """
+        turn = self.next[self.twin]
+        label = np.arange(len(turn))
+        for _ in range(max(1, int(len(turn)).bit_length())):
+            label = np.minimum(label, label[turn])
+            turn = turn[turn]
+        return label
+
+    def loops(self) -> tuple[tuple[int, ...], ...]:
+        """The faces as tuples of vertex ids."""
+        flat = self.face_vertex.tolist()
+        start = self.face_start.tolist()
+        return tuple(tuple(flat[start[i] : start[i + 1]]) for i in range(self.face_count))

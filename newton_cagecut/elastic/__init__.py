@@ -1,0 +1,10 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The elastic body inside a cage: materials, quadrature and the reduced system (paper, section 6.1)."""
+
+from .material import Material
+from .quadrature import sample_quadrature
+from .system import Energy, LinearTerm, ReducedSystem
+
+__all__ = ["Energy", "LinearTerm", "Material", "ReducedSystem", "sample_quadrature"]

@@ -1,0 +1,71 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Materials: the constants of an isotropic hyperelastic solid (paper, section 6.1; Smith et al. 2018)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+MODELS = ("neo_hookean", "stvk")
+"""Names of the constitutive models."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Material:
+    """An isotropic hyperelastic material.
+
+    Args:
+        young: Young's modulus [Pa].
+        poisson: Poisson's ratio, in (-1, 0.5).
+        density: Rest density [kg/m^3].
+        damping: Rayleigh damping proportional to the stiffness [s].
+        model: ``"neo_hookean"`` (stable, recovers from inversion) or ``"stvk"`` (Saint Venant-Kirchhoff, the
+            paper's, which inverts under strong compression).
+
+    Raises:
+        TypeError: If a constant is not a number.
+        ValueError: If a constant is out of its range or the model is unknown.
+    """
+
+    young: float = 1.0e5
+    poisson: float = 0.4
+    density: float = 1000.0
+    damping: float = 0.0
+    model: str = "neo_hookean"
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            if field.name != "model":
+                object.__setattr__(self, field.name, _as_finite(field.name, getattr(self, field.name)))
+        if self.young <= 0.0:
+            raise ValueError(f"Material young is {self.young} Pa; it must be positive.")
+        if not -1.0 < self.poisson < 0.5:
+            raise ValueError(
+                f"Material poisson is {self.poisson}; it must lie in (-1, 0.5). Use 0.49 for a nearly "
+                "incompressible material."
+            )
+        if self.density <= 0.0:
+            raise ValueError(f"Material density is {self.density} kg/m^3; it must be positive.")
+        if self.damping < 0.0:
+            raise ValueError(f"Material damping is {self.damping} s; it must not be negative.")
+        if self.model not in MODELS:
+            raise ValueError(f"Material model is {self.model!r}; choose one of {', '.join(map(repr, MODELS))}.")
+
+    @property
+    def lame(self) -> tuple[float, float]:
+        """Lame's constants (mu, lambda) [Pa]; mu is the shear modulus."""
+        mu = self.young / (2.0 * (1.0 + self.poisson))
+        return mu, self.young * self.poisson / ((1.0 + self.poisson) * (1.0 - 2.0 * self.poisson))
+
+
+def _as_finite(name: str, value: float) -> float:
+    """One constant as a finite float."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"Material {name} is {value!r}; it must be a number.") from error
+    if not math.isfinite(number):
+        raise ValueError(f"Material {name} is {number}; it must be finite.")
+    return number

@@ -1,0 +1,78 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Stabilisation of cage vertices that the quadrature hardly sees.
+
+A cut makes vertices whose shape functions live where few quadrature points are, at a fresh tip above all. The reduced
+system leaves such a vertex with almost no mass and no stiffness, and noise throws it about. Here it is tied to its
+neighbours: with c_i = e_i - b_i, where the affine combination b_i of the neighbours gives vertex i at rest, the
+energy mu k_i / 2 |c_i . x|^2 and the inertia rho m_i |c_i . v|^2 / 2 vanish for every affine motion. So neither resists
+a rigid motion, and forces and torques sum to zero. They top up what the quadrature gives to a share of what a shape
+function of the vertex's size should have, and are zero for well sampled vertices.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+_STIFFNESS_SHARE = 0.1
+"""Least integral of |grad w_i|^2, in sizes of the vertex's neighbourhood."""
+
+_MASS_SHARE = 0.01
+"""Least integral of w_i^2, in cubes of that size."""
+
+_MISFIT = 1.0e-6
+"""Error of an affine combination, in sizes, above which there is none: the neighbours lie in a plane."""
+
+
+def stabilize(
+    vertices: np.ndarray, edges: np.ndarray, weights: np.ndarray, gradients: np.ndarray, volumes: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Matrices that tie undersampled vertices to their neighbours.
+
+    Args:
+        vertices: Rest positions of the cage's vertices, shape (n, 3) [m].
+        edges: Pairs of vertices that share an edge, shape (m, 2).
+        weights: Weights at the quadrature points, shape (q, n).
+        gradients: Gradients of the weights, shape (q, n, 3) [1/m].
+        volumes: Volumes of the quadrature points, shape (q,) [m^3].
+
+    Returns:
+        Stiffness over the shear modulus, shape (n, n) [m], and mass over the density, shape (n, n) [m^3].
+    """
+    count = len(vertices)
+    length = np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1)
+    ends = edges.reshape(-1)
+    size = np.bincount(ends, np.repeat(length, 2), count) / np.maximum(np.bincount(ends, minlength=count), 1)
+    seen_stiffness = np.einsum("q,qjk,qjk->j", volumes, gradients, gradients)
+    seen_mass = np.einsum("q,qj,qj->j", volumes, weights, weights)
+    missing_stiffness = np.maximum(_STIFFNESS_SHARE * size - seen_stiffness, 0.0)
+    missing_mass = np.maximum(_MASS_SHARE * size**3 - seen_mass, 0.0)
+    stiffness, mass = np.zeros((count, count)), np.zeros((count, count))
+    adjacent = np.zeros((count, count), dtype=bool)
+    adjacent[edges[:, 0], edges[:, 1]] = adjacent[edges[:, 1], edges[:, 0]] = True
+    for i in np.flatnonzero((missing_stiffness > 0.0) | (missing_mass > 0.0)):
+        deviation = _deviation(i, vertices, adjacent, size[i])
+        outer = np.outer(deviation, deviation)
+        stiffness += missing_stiffness[i] * outer
+        mass += missing_mass[i] * outer
+    return stiffness, mass
+
+
+def _deviation(i: int, vertices: np.ndarray, adjacent: np.ndarray, size: float) -> np.ndarray:
+    """c_i: vertex i minus the affine combination of vertices up to two edges away that gives it; 0 if none does."""
+    near = adjacent[i] | adjacent[adjacent[i]].any(axis=0)
+    offset = vertices - vertices[i]
+    distance = np.linalg.norm(offset, axis=1)
+    # The vertex itself and its twin on the other side of the cut, if any, are at distance zero.
+    neighbors = np.flatnonzero(near & (distance > 1.0e-9 * size))
+    row = np.zeros(len(vertices))
+    conditions = np.vstack([np.ones(len(neighbors)), offset[neighbors].T / size])
+    scaled = conditions * (size / distance[neighbors])
+    combination = np.linalg.lstsq(scaled, np.array([1.0, 0.0, 0.0, 0.0]), rcond=1.0e-9)[0] * (
+        size / distance[neighbors]
+    )
+    if np.abs(conditions @ combination - [1.0, 0.0, 0.0, 0.0]).max() < _MISFIT:
+        row[neighbors] = -combination
+        row[i] = 1.0
+    return row

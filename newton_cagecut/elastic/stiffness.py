@@ -1,0 +1,105 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The stiffness of one quadrature point, projected to be positive semidefinite and kept in factors.
+
+The projection of Teran et al. 2005 and Smith et al. 2018, section 4: in the frame of the singular vectors, negative
+eigenvalues of the 3x3 stretch block and of the six shear modes are set to zero. A stiffness that is positive
+semidefinite already is left as it is. 33 numbers stand for the 81 of the full matrix.
+"""
+
+from __future__ import annotations
+
+import functools
+
+import warp as wp
+
+from .constitutive import CONSTITUTIVE_MODELS
+
+wp.set_module_options({"enable_backward": False})
+
+
+@wp.struct
+class Stiffness:
+    """Second derivative of an energy by F, in the frame of F's singular vectors.
+
+    With D = left^T dF right, the stress changes by left T right^T: T_ii = sum_k stretch_ik D_kk and
+    T_ij = straight_k D_ij + crossed_k D_ji for the pair (i, j) other than k.
+    """
+
+    left: wp.mat33
+    right: wp.mat33
+    stretch: wp.mat33
+    straight: wp.vec3
+    crossed: wp.vec3
+
+
+@wp.func
+def project_block(block: wp.mat33d) -> wp.mat33d:
+    """Nearest positive semidefinite matrix; the matrix itself where it is one."""
+    vectors, values = wp.eig3(block)
+    result = block
+    for k in range(3):
+        if values[k] < wp.float64(0.0):
+            axis = wp.vec3d(vectors[0, k], vectors[1, k], vectors[2, k])
+            result -= values[k] * wp.outer(axis, axis)
+    return result
+
+
+@wp.func
+def clamp_modes(modes: wp.vec3d) -> wp.vec3d:
+    """Modes with the negative ones set to zero."""
+    zero = wp.float64(0.0)
+    return wp.vec3d(wp.max(modes[0], zero), wp.max(modes[1], zero), wp.max(modes[2], zero))
+
+
+@functools.cache
+def make_stiffness_function(model: str) -> wp.Function:
+    """The function (F, mu, lam, scale) -> projected stiffness times scale, of one constitutive model."""
+    stretch_block, symmetric_modes, antisymmetric_modes = CONSTITUTIVE_MODELS[model][2:]
+
+    @wp.func
+    def stiffness(F: wp.mat33d, mu: wp.float64, lam: wp.float64, scale: wp.float64) -> Stiffness:
+        left, stretches, right = wp.svd3(F)
+        symmetric = clamp_modes(symmetric_modes(stretches, mu, lam))
+        antisymmetric = clamp_modes(antisymmetric_modes(stretches, mu, lam))
+        half = wp.float64(0.5) * scale
+        result = Stiffness()
+        result.left = wp.mat33(left)
+        result.right = wp.mat33(right)
+        result.stretch = wp.mat33(scale * project_block(stretch_block(stretches, mu, lam)))
+        result.straight = wp.vec3(half * (symmetric + antisymmetric))
+        result.crossed = wp.vec3(half * (symmetric - antisymmetric))
+        return result
+
+    return stiffness
+
+
+@wp.func
+def apply_stiffness(stiffness: Stiffness, dF: wp.mat33) -> wp.mat33:
+    """Change of the stress with a change of F."""
+    D = wp.transpose(stiffness.left) * dF * stiffness.right
+    diagonal = stiffness.stretch * wp.get_diag(D)
+    T = wp.mat33()
+    for i in range(3):
+        T[i, i] = diagonal[i]
+        for j in range(i):
+            T[i, j] = stiffness.straight[3 - i - j] * D[i, j] + stiffness.crossed[3 - i - j] * D[j, i]
+            T[j, i] = stiffness.straight[3 - i - j] * D[j, i] + stiffness.crossed[3 - i - j] * D[i, j]
+    return stiffness.left * T * wp.transpose(stiffness.right)
+
+
+@wp.func
+def vertex_block(stiffness: Stiffness, gradient: wp.vec3) -> wp.mat33:
+    """The 3x3 matrix B with a . B b = (a (x) gradient) : stiffness : (b (x) gradient)."""
+    h = wp.transpose(stiffness.right) * gradient
+    B = wp.mat33()
+    for i in range(3):
+        B[i, i] += stiffness.stretch[i, i] * h[i] * h[i]
+        for j in range(i):
+            k = 3 - i - j
+            B[i, i] += stiffness.straight[k] * h[j] * h[j]
+            B[j, j] += stiffness.straight[k] * h[i] * h[i]
+            B[i, j] = (stiffness.stretch[i, j] + stiffness.crossed[k]) * h[i] * h[j]
+            B[j, i] = B[i, j]
+    return stiffness.left * B * wp.transpose(stiffness.left)

@@ -1,0 +1,10 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Harmonic coordinates by Walk on Spheres: walls, walks, bounds, cache, resolve."""
+
+from .coordinates import HarmonicCoordinates
+from .domain import Domain
+from .stats import UpdateStats
+
+__all__ = ["Domain", "HarmonicCoordinates", "UpdateStats"]

@@ -1,0 +1,281 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Harmonic coordinates of points in a cage, by Walk on Spheres, with incremental updates (paper, sections 3 to 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import warp as wp
+
+from ..cage import Cage, CageEdit
+from .compact import ON_FACE, REWALK, gather, mark_walks
+from .domain import Domain, DomainChange
+from .landing import LANDING_DTYPES
+from .launch import launch
+from .options import WalkOptions
+from .stats import UpdateStats
+from .walker import Walker
+
+
+class HarmonicCoordinates:
+    """Harmonic coordinates of points with respect to a cage.
+
+    Args:
+        cage: The cage, or a ``Domain`` that other coordinates hold already and that is to be shared.
+        points: Rest positions inside the cage [m], shape (point_count, 3).
+        walks: Walks a point. The standard error falls as the root of it.
+        seed: Seed of all walks. The same seed on the same walls gives the same weights, bit for bit.
+        gradients: Whether to estimate the weights' gradients: for all points, or those of a mask, shape (point_count,).
+        cuttable: Whether to keep the walk cache that updates need (64 bytes a walk).
+        device: Where to walk; Warp's current device by default.
+        correction: "harmonic" (control variates), "affine" (paper, equation 5) or "none" (plain means).
+        bounds: Bounding volume of a walk; "dop18".
+        distance: "grid" (candidate grid) or "all" (every wall); the results are identical.
+        quads: "mean_value" (paper, equation 4) or "harmonic" for convex quads of the cage.
+        epsilon: Distance at which a walk lands, relative to half of the longest side of the cage's bounding box.
+        max_steps: Cap on a walk's steps; capped walks land on the nearest wall and are counted.
+        degree: Highest degree of the harmonic control variates, 1 to 3.
+        point_keys: For points that lie on a wall: its key 2 * wall + side; -1 for the others. Shape (point_count,).
+        point_capacity: Points to reserve room for; the number of points by default.
+        vertex_capacity: Cage vertices to reserve room for; by default room grows as it is needed. With a capacity
+            the arrays never move, so captured CUDA graphs stay valid.
+        progress: Called with the finished fraction of the first walk, between 0 and 1.
+
+    Raises:
+        ValueError: An option is out of its range, or points lie outside the cage.
+    """
+
+    def __init__(
+        self,
+        cage: Cage | Domain,
+        points: np.ndarray,
+        walks: int = 1024,
+        seed: int = 0,
+        gradients: bool | np.ndarray = False,
+        cuttable: bool = True,
+        device: wp.context.Devicelike = None,
+        *,
+        correction: str = "harmonic",
+        bounds: str = "dop18",
+        distance: str = "grid",
+        quads: str = "mean_value",
+        epsilon: float = 1.0e-4,
+        max_steps: int = 256,
+        degree: int = 3,
+        point_keys: np.ndarray | None = None,
+        point_capacity: int | None = None,
+        vertex_capacity: int | None = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> None:
+        options = WalkOptions(walks, seed, correction, bounds, distance, quads, epsilon, max_steps, degree)
+        if isinstance(cage, Domain):
+            self.domain = cage
+        else:
+            self.domain = Domain(cage, quads=quads, distance=distance, device=wp.get_device(device))
+        points = _checked_points(points)
+        keys = np.full(len(points), -1, np.int32) if point_keys is None else np.asarray(point_keys, np.int32)
+        self._refuse_outside(points, keys)
+        self._walker = Walker(
+            self.domain,
+            options,
+            point_capacity=max(point_capacity or 0, len(points)),
+            vertex_capacity=vertex_capacity,
+            gradient_mask=np.broadcast_to(np.asarray(gradients, dtype=bool), len(points)),
+            cuttable=cuttable,
+        )
+        self._walker.place(np.arange(len(points)), points, keys)
+        self._walker.run_all(self._new_stats(), progress=progress)
+
+    @property
+    def cage(self) -> Cage:
+        """The cage as it is now."""
+        return self.domain.cage
+
+    @property
+    def point_count(self) -> int:
+        """Number of points."""
+        return self._walker.point_count
+
+    @property
+    def walks(self) -> int:
+        """Walks a point."""
+        return self._walker.options.walks
+
+    @property
+    def weights(self) -> np.ndarray:
+        """The weights, shape (point_count, cage.vertex_count), float32; a copy."""
+        return self._walker.weights.numpy()[: self.point_count, : self.cage.vertex_count].copy()
+
+    @property
+    def gradients(self) -> np.ndarray:
+        """The weights' gradients [1/m] of the points that have them, shape (gradient_count, cage.vertex_count, 3)."""
+        return self._walker.gradients.numpy()[:, : self.cage.vertex_count].copy()
+
+    @property
+    def weights_array(self) -> wp.array:
+        """The weights on the device, shape (point_capacity, vertex_capacity); unused entries are 0."""
+        return self._walker.weights
+
+    @property
+    def gradients_array(self) -> wp.array:
+        """The gradients [1/m] on the device, vec3, shape (gradient_count, vertex_capacity); unused entries are 0."""
+        return self._walker.gradients
+
+    @property
+    def degrees(self) -> np.ndarray:
+        """Degree of the control variates that each point uses, shape (point_count,)."""
+        return self._walker.degrees.numpy()[: self.point_count].copy()
+
+    @property
+    def landings(self) -> dict[str, np.ndarray]:
+        """The cached landings: "key", "point", "face", "edge", "param", a row a walk; copies."""
+        landings = self._cache_of("landings").landings
+        count = self.point_count * self.walks
+        return {name: getattr(landings, name).numpy()[:count].copy() for name in LANDING_DTYPES}
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """The cached bounds of the walks, quantised, shape (walk_count, 18); a copy."""
+        return self._cache_of("bounds").bounds.numpy()[: self.point_count * self.walks].copy()
+
+    def memory(self) -> dict[str, int]:
+        """Bytes of each part on the device."""
+        return self._walker.memory()
+
+    def update(self, edit: CageEdit) -> UpdateStats:
+        """Bring the weights up to date with an edit of the cage.
+
+        Only the walks that the new piece of cut may have met are walked again, only landings on changed faces are
+        evaluated again, only points with either are resolved again (paper, section 5.2). The result equals that of
+        ``recompute()`` bit for bit.
+
+        Args:
+            edit: The next edit of the cage that the coordinates hold.
+
+        Raises:
+            ValueError: There is no walk cache, the edit does not start from the present cage, or the cage has more
+                vertices than were reserved. Nothing has changed then.
+        """
+        walker = self._cache_of("update")
+        walker.require_vertices(edit.cage.vertex_count)
+        stats = self._new_stats()
+        with stats.time("walls", self.domain.device):
+            change = self.domain.apply(edit)
+            walker.grow_vertices(edit.cage.vertex_count)
+            if change.regrouped:
+                walker.group_points()
+        if edit.cage is edit.before:
+            return stats
+        self._run_concerned(change, stats)
+        return stats
+
+    def recompute(self) -> UpdateStats:
+        """Walk every walk again on the walls as they are: the paper's naive baseline."""
+        stats = self._new_stats()
+        self._walker.run_all(stats)
+        return stats
+
+    def set_points(self, indices: np.ndarray, points: np.ndarray, point_keys: np.ndarray | None = None) -> UpdateStats:
+        """Move points, or add points at the end, and walk for them alone.
+
+        Args:
+            indices: Points to set, shape (n,); new ones continue the count without gaps.
+            points: Rest positions [m], shape (n, 3).
+            point_keys: Key 2 * wall + side for points on a wall, else -1, shape (n,).
+
+        Raises:
+            ValueError: A point lies outside the cage, or more points than were reserved. Nothing has changed then.
+        """
+        walker = self._cache_of("set_points")
+        indices = np.asarray(indices, dtype=np.int64)
+        points = _checked_points(points)
+        keys = np.full(len(points), -1, np.int32) if point_keys is None else np.asarray(point_keys, np.int32)
+        walker.require_points(int(indices.max(initial=-1)) + 1)
+        self._refuse_outside(points, keys)
+        walker.place(indices, points, keys)
+        stats = self._new_stats()
+        work = (indices[:, None] * self.walks + np.arange(self.walks)).reshape(-1).astype(np.int32)
+        work = wp.array(work, dtype=wp.int32, device=self.domain.device)
+        walker.walk(work, stats)
+        walker.land(work, stats)
+        walker.resolve(indices, stats)
+        return stats
+
+    def boundary_weights(self, points: np.ndarray, point_keys: np.ndarray, *, walks: int = 1024) -> np.ndarray:
+        """Weights of points on the cage's walls, on the faces as they are.
+
+        Args:
+            points: Rest positions on the walls [m], shape (n, 3).
+            point_keys: Key 2 * wall + side of the side that each lies on, shape (n,).
+            walks: Walks a point, for faces that need nested walks.
+
+        Returns:
+            Weights, shape (n, cage.vertex_count), float32.
+        """
+        options = self._walker.options
+        coordinates = HarmonicCoordinates(
+            self.domain,
+            points,
+            walks,
+            options.seed,
+            cuttable=False,
+            epsilon=options.epsilon,
+            point_keys=point_keys,
+        )
+        return coordinates.weights
+
+    def _run_concerned(self, change: DomainChange, stats: UpdateStats) -> None:
+        walker, device = self._walker, self.domain.device
+        walk_count = self.point_count * self.walks
+        with stats.time("check", device):
+            marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
+            touched = wp.zeros(self.point_count, dtype=wp.uint8, device=device)
+            changed = wp.array(change.changed_keys.astype(np.uint8), dtype=wp.uint8, device=device)
+            launch(
+                mark_walks,
+                walk_count,
+                [self.walks, walker.bounds, change.pieces, walker.landings, changed, marks, touched],
+                device=device,
+            )
+            rewalk, on_face = gather(marks, int(REWALK)), gather(marks, int(ON_FACE))
+        stats.checked = walk_count
+        stats.rewalked, stats.on_face = rewalk.size, on_face.size
+        walker.walk(rewalk, stats)
+        walker.land(rewalk, stats, part="rewalk")
+        walker.land(on_face, stats, part="on_face")
+        walker.resolve(np.flatnonzero(touched.numpy()), stats)
+
+    def _cache_of(self, wanted: str) -> Walker:
+        if not self._walker.cuttable:
+            raise ValueError(f"{wanted}: these coordinates were made with cuttable=False and keep no walk cache")
+        return self._walker
+
+    def _new_stats(self) -> UpdateStats:
+        return UpdateStats(self.walks * self.point_count)
+
+    def _refuse_outside(self, points: np.ndarray, keys: np.ndarray) -> None:
+        inner = np.flatnonzero(keys < 0)
+        outside = inner[~np.asarray(self.domain.cage.contains(points[inner]))] if len(inner) else inner
+        if not len(outside):
+            return
+        distance = self.domain.distance_to_walls(points[outside])
+        beyond = distance > 1.0e-6 * self.domain.frame.half_side
+        if beyond.any():
+            worst = outside[np.argmax(distance)]
+            raise ValueError(
+                f"{int(beyond.sum())} of {len(points)} points lie outside the cage, the farthest (point {worst}) by "
+                f"{distance.max():.4g} m; enlarge the cage or remove them"
+            )
+
+
+def _checked_points(points: np.ndarray) -> np.ndarray:
+    points = np.asarray(points, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise ValueError(f"points must have the shape (n, 3), not {points.shape}")
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        raise ValueError(f"point {bad[0]} is not finite: {points[bad[0]]}")
+    return points

@@ -1,0 +1,146 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The domain of the walks: walls, candidate grid and faces of one cage, kept up to date as it is edited."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import warp as wp
+
+from ..cage import Cage, CageEdit
+from .bounds import PieceBounds, bound_pieces
+from .faces import NESTED, build_face_tables
+from .frame import UnitFrame
+from .grid import CandidateGrid
+from .launch import launch
+from .walls import Walls, measure_distance
+
+
+@dataclass(frozen=True)
+class DomainChange:
+    """What an edit means for walks.
+
+    Args:
+        pieces: Bounds of the new pieces of wall.
+        changed_keys: Whether landings with key 2 * wall + side need their face again, shape (2 * wall_count,).
+        regrouped: Whether the components are other ones than before.
+    """
+
+    pieces: PieceBounds
+    changed_keys: np.ndarray
+    regrouped: bool
+
+
+class Domain:
+    """Walls, grid and faces of a cage on a device; several sets of coordinates can share one.
+
+    Args:
+        cage: The cage; it may have cuts already.
+        quads: "mean_value" or "harmonic": how convex quads interpolate.
+        distance: "grid" or "all": how the nearest wall is found.
+        grid_resolution: Cells of the grid along the cage's longest side.
+        device: Where to put them.
+    """
+
+    def __init__(
+        self, cage: Cage, *, quads: str, distance: str, device: wp.context.Device, grid_resolution: int = 32
+    ) -> None:
+        self.cage = cage
+        self.quads = quads
+        self.distance = distance
+        self.device = device
+        self.frame = UnitFrame.of(cage.vertices)
+        self.walls = Walls(self.frame, device=device)
+        faces = np.asarray(cage.triangle_face)
+        self._append(cage.vertices[np.asarray(cage.triangles)], np.asarray(cage.face_wall)[faces], cage)
+        resolution = grid_resolution if distance == "grid" else 1
+        self.grid = CandidateGrid(self.walls, resolution=resolution)
+        self.faces = build_face_tables(cage, self.frame, quads=quads, device=device)
+        self._last: tuple[CageEdit, DomainChange] | None = None
+
+    @property
+    def has_nested_faces(self) -> bool:
+        """Whether any face needs a nested walk."""
+        return bool((self.faces.kind.numpy() == int(NESTED)).any())
+
+    def components_of(self, points: np.ndarray) -> np.ndarray:
+        """Component of the cage that each rest position lies in; all 0 while there is one. Shape (n,)."""
+        if self.cage.component_count == 1:
+            return np.zeros(len(points), dtype=np.int32)
+        return np.asarray(self.cage.component_of(points), dtype=np.int32)
+
+    def distance_to_walls(self, points: np.ndarray) -> np.ndarray:
+        """Distance of rest positions [m] to the nearest wall [m], shape (n,)."""
+        unit = wp.array(self.frame.to_unit(points).astype(np.float32), dtype=wp.vec3, device=self.device)
+        distance = wp.empty(len(points), dtype=float, device=self.device)
+        launch(measure_distance, len(points), [self.walls.data, unit, distance], device=self.device)
+        return distance.numpy() * self.frame.half_side
+
+    def apply(self, edit: CageEdit) -> DomainChange:
+        """Append an edit's walls and take over its faces; the same edit a second time changes nothing.
+
+        Raises:
+            ValueError: The edit starts from another cage than the present one.
+        """
+        if self._last is not None and self._last[0] is edit:
+            return self._last[1]
+        if edit.before is not self.cage:
+            raise ValueError(
+                "update: the edit starts from another cage than the one held; pass every edit of a cut, in order"
+            )
+        if len(edit.swept_triangles):
+            corners = np.asarray(edit.swept_triangles)
+            first = self.walls.triangle_count
+            self._append(corners, np.full(len(corners), edit.wall), edit.cage)
+            self.grid.merge(first)
+        self.faces = build_face_tables(edit.cage, self.frame, quads=self.quads, device=self.device)
+        change = self._change(edit)
+        self.cage = edit.cage
+        self._last = (edit, change)
+        return change
+
+    def _append(self, corners: np.ndarray, walls: np.ndarray, cage: Cage) -> None:
+        normals = np.array([wall.normal for wall in cage.walls])[walls]
+        two_sided = np.array([wall.two_sided for wall in cage.walls])[walls]
+        self.walls.append(corners, walls, normals, two_sided)
+
+    def _change(self, edit: CageEdit) -> DomainChange:
+        polygons = [self.frame.to_unit(polygon) for polygon in edit.swept]
+        normal = np.asarray(edit.cage.walls[edit.wall].normal)
+        pieces = bound_pieces(polygons, [_directions(polygon, normal) for polygon in polygons], self.device)
+        regrouped = _components_differ(edit.before, edit.cage)
+        changed = np.zeros((len(edit.cage.walls), 2), dtype=bool)
+        changed.reshape(-1)[np.asarray(edit.changed_keys, dtype=np.int64)] = True
+        if regrouped:
+            changed.reshape(-1)[_ambiguous_keys(edit.cage)] = True
+        changed |= changed.any(axis=1, keepdims=True)
+        return DomainChange(pieces, changed.reshape(-1), regrouped)
+
+
+def _directions(polygon: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Directions along which a flat piece is thin: its normal, and across its longest edge. Shape (2, 3)."""
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    longest = edges[np.argmax((edges**2).sum(axis=1))]
+    across = np.cross(normal, longest)
+    return np.stack([normal, across / max(np.linalg.norm(across), 1.0e-30)])
+
+
+def _components_differ(before: Cage, after: Cage) -> bool:
+    """Whether the faces that both cages have are grouped in other components."""
+    if before.component_count != after.component_count:
+        return True
+    if after.component_count == 1:
+        return False
+    shared = min(before.vertex_count, after.vertex_count)
+    return not np.array_equal(before.vertex_component[:shared], after.vertex_component[:shared])
+
+
+def _ambiguous_keys(cage: Cage) -> np.ndarray:
+    """Keys whose landings had a choice of faces: those of several faces, and of two-sided walls."""
+    keys = 2 * np.asarray(cage.face_wall) + np.asarray(cage.face_side)
+    several = np.bincount(keys, minlength=2 * len(cage.walls)) > 1
+    two_sided = np.repeat([wall.two_sided for wall in cage.walls], 2)
+    return np.flatnonzero(several | two_sided)

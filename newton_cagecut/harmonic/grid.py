@@ -1,0 +1,241 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The candidate grid: for each cell, every wall triangle that can be nearest to some point of the cell.
+
+A triangle w is a candidate of a cell with centre c and diagonal D when d(c, w) <= min_w' d(c, w') + D: for any q in
+the cell, |d(q, w) - d(c, w)| <= D / 2, for every w. So the query over the list returns bit for bit what the query
+over all walls returns, medial axis included (the paper's grid, section 6.2, is not exact there). The grid is refined
+level by level, each cell choosing among its parent's candidates, and new walls are merged into the cells that they
+can reach.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import warp as wp
+
+from .launch import launch
+from .walls import Nearest, Walls, WallTriangles, closest_point_on_triangle, nearer
+
+wp.set_module_options({"enable_backward": False})
+
+_MARGIN = wp.constant(1.0e-5)
+"""Added to the candidate rule: wider than the rounding of the distances that it compares."""
+
+_COARSEST = 4
+
+
+@wp.struct
+class GridCells:
+    """Cells of a uniform grid; cell (i, j, k) holds items[start[cell] : start[cell + 1]]."""
+
+    low: wp.vec3
+    size: float
+    shape: wp.vec3i
+    start: wp.array[wp.int32]
+    items: wp.array[wp.int32]
+
+
+@wp.func
+def cell_center(cells: GridCells, cell: int) -> wp.vec3:
+    """Centre of a cell."""
+    i = cell // (cells.shape[1] * cells.shape[2])
+    j = (cell // cells.shape[2]) % cells.shape[1]
+    k = cell % cells.shape[2]
+    return cells.low + cells.size * wp.vec3(float(i) + 0.5, float(j) + 0.5, float(k) + 0.5)
+
+
+@wp.func
+def cell_of(cells: GridCells, x: wp.vec3) -> int:
+    """Cell that holds a point; points outside take the nearest cell."""
+    q = (x - cells.low) / cells.size
+    i = wp.clamp(int(q[0]), 0, cells.shape[0] - 1)
+    j = wp.clamp(int(q[1]), 0, cells.shape[1] - 1)
+    k = wp.clamp(int(q[2]), 0, cells.shape[2] - 1)
+    return (i * cells.shape[1] + j) * cells.shape[2] + k
+
+
+@wp.func
+def nearest_in_grid(triangles: WallTriangles, cells: GridCells, x: wp.vec3, best: Nearest) -> Nearest:
+    """The nearest wall triangle, by the cell's candidates, starting from a guess."""
+    cell = cell_of(cells, x)
+    for item in range(cells.start[cell], cells.start[cell + 1]):
+        best = nearer(triangles, cells.items[item], x, best)
+    return best
+
+
+@wp.func
+def _center_distance(triangles: WallTriangles, t: int, center: wp.vec3) -> float:
+    return wp.length(center - closest_point_on_triangle(triangles, t, center))
+
+
+@wp.kernel(enable_backward=False)
+def _measure_cells(
+    offset: int,
+    triangles: WallTriangles,
+    parent: GridCells,
+    cells: GridCells,
+    nearest: wp.array[float],
+    counts: wp.array[wp.int32],
+):
+    cell = offset + wp.tid()
+    center = cell_center(cells, cell)
+    parent_cell = cell_of(parent, center)
+    first = parent.start[parent_cell]
+    last = parent.start[parent_cell + 1]
+    best = float(1.0e30)
+    for item in range(first, last):
+        best = wp.min(best, _center_distance(triangles, parent.items[item], center))
+    reach = best + cells.size * wp.sqrt(3.0) + _MARGIN
+    count = int(0)
+    for item in range(first, last):
+        if _center_distance(triangles, parent.items[item], center) <= reach:
+            count += 1
+    nearest[cell] = best
+    counts[cell] = count
+
+
+@wp.kernel(enable_backward=False)
+def _fill_cells(offset: int, triangles: WallTriangles, parent: GridCells, cells: GridCells, nearest: wp.array[float]):
+    cell = offset + wp.tid()
+    center = cell_center(cells, cell)
+    parent_cell = cell_of(parent, center)
+    reach = nearest[cell] + cells.size * wp.sqrt(3.0) + _MARGIN
+    slot = cells.start[cell]
+    for item in range(parent.start[parent_cell], parent.start[parent_cell + 1]):
+        if _center_distance(triangles, parent.items[item], center) <= reach:
+            cells.items[slot] = parent.items[item]
+            slot += 1
+
+
+@wp.kernel(enable_backward=False)
+def _measure_new(
+    offset: int,
+    triangles: WallTriangles,
+    first_new: int,
+    cells: GridCells,
+    nearest: wp.array[float],
+    counts: wp.array[wp.int32],
+):
+    cell = offset + wp.tid()
+    center = cell_center(cells, cell)
+    old_reach = nearest[cell] + cells.size * wp.sqrt(3.0) + _MARGIN
+    best = nearest[cell]
+    count = int(0)
+    for t in range(first_new, triangles.count):
+        distance = _center_distance(triangles, t, center)
+        best = wp.min(best, distance)
+        if distance <= old_reach:
+            count += 1
+    counts[cell] = cells.start[cell + 1] - cells.start[cell] + count
+
+
+@wp.kernel(enable_backward=False)
+def _fill_merged(
+    offset: int,
+    triangles: WallTriangles,
+    first_new: int,
+    old: GridCells,
+    cells: GridCells,
+    nearest: wp.array[float],
+):
+    cell = offset + wp.tid()
+    slot = cells.start[cell]
+    for item in range(old.start[cell], old.start[cell + 1]):
+        cells.items[slot] = old.items[item]
+        slot += 1
+    if cells.start[cell + 1] == slot:
+        return
+    center = cell_center(cells, cell)
+    old_reach = nearest[cell] + cells.size * wp.sqrt(3.0) + _MARGIN
+    best = nearest[cell]
+    for t in range(first_new, triangles.count):
+        distance = _center_distance(triangles, t, center)
+        best = wp.min(best, distance)
+        if distance <= old_reach:
+            cells.items[slot] = t
+            slot += 1
+    nearest[cell] = best
+
+
+class CandidateGrid:
+    """Uniform grid of nearest-wall candidates over the unit frame's box.
+
+    Args:
+        walls: The walls to index; at least those of the cage.
+        resolution: Cells along the box's longest side.
+    """
+
+    def __init__(self, walls: Walls, *, resolution: int = 32) -> None:
+        self.walls = walls
+        self.resolution = resolution
+        self._build()
+
+    @property
+    def byte_count(self) -> int:
+        """Bytes on the device."""
+        return 4 * (self.cells.start.size + self.cells.items.size + self._nearest.size)
+
+    def merge(self, first_new: int) -> None:
+        """Add the triangles from ``first_new`` on to the cells that they can reach."""
+        old = self.cells
+        cell_count = old.start.size - 1
+        device = self.walls.device
+        counts = wp.empty(cell_count, dtype=wp.int32, device=device)
+        launch(_measure_new, cell_count, [self.walls.data, first_new, old, self._nearest, counts], device=device)
+        cells = _cells_like(old, counts)
+        launch(_fill_merged, cell_count, [self.walls.data, first_new, old, cells, self._nearest], device=device)
+        self.cells = cells
+
+    def _build(self) -> None:
+        device = self.walls.device
+        half = self.walls.frame.half_extents
+        parent = _single_cell(half, self.walls.triangle_count, device)
+        for resolution in _levels(self.resolution):
+            cells = _uniform_cells(half, resolution, device)
+            cell_count = int(np.prod(list(cells.shape)))
+            counts = wp.empty(cell_count, dtype=wp.int32, device=device)
+            self._nearest = wp.empty(cell_count, dtype=float, device=device)
+            launch(_measure_cells, cell_count, [self.walls.data, parent, cells, self._nearest, counts], device=device)
+            cells = _cells_like(cells, counts)
+            launch(_fill_cells, cell_count, [self.walls.data, parent, cells, self._nearest], device=device)
+            self.cells = parent = cells
+
+
+def _levels(resolution: int) -> list[int]:
+    """Resolutions from coarse to fine whose cells nest: each is half of the next."""
+    levels = [resolution]
+    while levels[0] > _COARSEST and levels[0] % 2 == 0:
+        levels.insert(0, levels[0] // 2)
+    return levels
+
+
+def _uniform_cells(half_extents: np.ndarray, resolution: int, device: wp.context.Device) -> GridCells:
+    pad = 1.0e-3
+    size = 2.0 * (1.0 + pad) / resolution
+    cells = GridCells()
+    cells.low = wp.vec3(*(-(half_extents + pad)).tolist())
+    cells.size = size
+    cells.shape = wp.vec3i(*np.maximum(1, np.ceil(2.0 * (half_extents + pad) / size - 1e-9)).astype(int).tolist())
+    cells.start = wp.zeros(1, dtype=wp.int32, device=device)
+    cells.items = wp.zeros(1, dtype=wp.int32, device=device)
+    return cells
+
+
+def _single_cell(half_extents: np.ndarray, triangle_count: int, device: wp.context.Device) -> GridCells:
+    cells = _uniform_cells(half_extents, 1, device)
+    cells.shape = wp.vec3i(1, 1, 1)
+    cells.start = wp.array([0, triangle_count], dtype=wp.int32, device=device)
+    cells.items = wp.array(np.arange(triangle_count, dtype=np.int32), device=device)
+    return cells
+
+
+def _cells_like(cells: GridCells, counts: wp.array) -> GridCells:
+    """The same cells with empty lists of the given lengths."""
+    result = GridCells()
+    result.low, result.size, result.shape = cells.low, cells.size, cells.shape
+    result.start = wp.zeros(counts.size + 1, dtype=wp.int32, device=counts.device)
+    wp.utils.array_scan(counts, result.start[1:], inclusive=True)
+    result.items = wp.empty(int(result.start[-1:].numpy()[0]), dtype=wp.int32, device=counts.device)
+    return result

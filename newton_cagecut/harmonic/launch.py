@@ -1,0 +1,73 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Kernel launches that use every core.
+
+A Warp launch on the CPU is serial but releases the interpreter lock, so there a launch is cut into chunks that a
+thread pool runs. On CUDA it is one launch. Kernels take the chunk's first index as their first argument.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+import warp as wp
+
+_CHUNKS_PER_CORE = 8
+_SMALLEST_CHUNK = 512
+_pool: ThreadPoolExecutor | None = None
+
+
+def launch(
+    kernel: wp.Kernel,
+    count: int,
+    inputs: list,
+    *,
+    device: wp.context.Device,
+    smallest_chunk: int = _SMALLEST_CHUNK,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Run ``kernel`` for the indices 0 to ``count`` - 1 and wait for it on the CPU.
+
+    Args:
+        kernel: Kernel whose first argument is the index of the chunk's first element.
+        count: Number of elements.
+        inputs: The kernel's other arguments.
+        device: Where to run.
+        smallest_chunk: Elements below which a chunk is not worth a thread.
+        progress: Called with the finished fraction, between 0 and 1.
+    """
+    if count <= 0:
+        return
+    if device.is_cuda:
+        wp.launch(kernel, dim=count, inputs=[0, *inputs], device=device)
+        if progress is not None:
+            wp.synchronize_device(device)
+            progress(1.0)
+        return
+    kernel.module.load(device)
+    core_count = _core_count()
+    size = max(smallest_chunk, -(-count // (core_count * _CHUNKS_PER_CORE)))
+    starts = range(0, count, size)
+
+    def run(start: int) -> int:
+        wp.launch(kernel, dim=min(size, count - start), inputs=[start, *inputs], device=device)
+        return min(start + size, count)
+
+    chunk_results = _thread_pool(core_count).map(run, starts) if len(starts) > 1 else map(run, starts)
+    for end in chunk_results:
+        if progress is not None:
+            progress(end / count)
+
+
+def _core_count() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
+
+
+def _thread_pool(core_count: int) -> ThreadPoolExecutor:
+    global _pool
+    if _pool is None:
+        _pool = ThreadPoolExecutor(core_count, thread_name_prefix="cagecut")
+    return _pool

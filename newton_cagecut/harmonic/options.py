@@ -1,0 +1,53 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The options of harmonic coordinates, checked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+CORRECTIONS = ("harmonic", "affine", "none")
+BOUNDS = ("dop18",)
+DISTANCES = ("grid", "all")
+QUADS = ("mean_value", "harmonic")
+
+
+@dataclass(frozen=True)
+class WalkOptions:
+    """Options of the walks and of the resolve; see ``HarmonicCoordinates``.
+
+    Raises:
+        ValueError: A value is out of its range; the message names the range.
+    """
+
+    walks: int
+    seed: int
+    correction: str
+    bounds: str
+    distance: str
+    quads: str
+    epsilon: float
+    max_steps: int
+    degree: int
+
+    def __post_init__(self) -> None:
+        for name, choices in (
+            ("correction", CORRECTIONS),
+            ("bounds", BOUNDS),
+            ("distance", DISTANCES),
+            ("quads", QUADS),
+        ):
+            if getattr(self, name) not in choices:
+                raise ValueError(f"{name} must be one of {', '.join(choices)}, not {getattr(self, name)!r}")
+        for name, low, high in (
+            ("walks", 1, 1 << 24),
+            ("seed", 0, (1 << 32) - 1),
+            ("max_steps", 1, 1 << 16),
+            ("degree", 1, 3),
+        ):
+            value = getattr(self, name)
+            if int(value) != value or not low <= value <= high:
+                raise ValueError(f"{name} must be a whole number from {low} to {high}, not {value!r}")
+        if not 1.0e-6 <= self.epsilon <= 0.1:
+            raise ValueError(f"epsilon must lie between 1e-6 and 0.1 (relative to the cage), not {self.epsilon!r}")

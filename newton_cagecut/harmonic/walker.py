@@ -1,0 +1,227 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The arrays of one set of points, and the three stages that fill them: walk, land, resolve."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import warp as wp
+
+from .bounds import QuantizedExtents
+from .compact import count_capped
+from .domain import Domain
+from .landing import CAPPED, LANDING_DTYPES, Landings, make_land_kernel
+from .launch import launch
+from .options import WalkOptions
+from .points import byte_count, empty_points
+from .resolve import FEATURE_COUNT, Features, Moments, make_resolve_kernel
+from .stats import UpdateStats
+from .walk import make_walk_kernel
+
+_BATCH_WALKS = 1 << 22
+_BATCH_BYTES = 1 << 26
+
+
+class Walker:
+    """Points, their walks and their weights on a device.
+
+    Args:
+        domain: Walls and faces.
+        options: Options of the walks.
+        point_capacity: Points that there is room for.
+        vertex_capacity: Cage vertices that there is room for; None lets the room grow.
+        gradient_mask: Points that have gradients, shape (initial point count,).
+        cuttable: Whether to keep all walks; otherwise they are forgotten once resolved.
+    """
+
+    def __init__(
+        self,
+        domain: Domain,
+        options: WalkOptions,
+        *,
+        point_capacity: int,
+        vertex_capacity: int | None,
+        gradient_mask: np.ndarray,
+        cuttable: bool,
+    ) -> None:
+        self.domain, self.options, self.cuttable = domain, options, cuttable
+        self.point_count = 0
+        self.point_capacity = point_capacity
+        self.fixed_vertex_capacity = vertex_capacity
+        self.require_vertices(domain.cage.vertex_count)
+        device = domain.device
+        self.points = empty_points(point_capacity, gradient_mask, device)
+        self.degrees = wp.zeros(point_capacity, dtype=wp.int32, device=device)
+        self._rest = np.zeros((point_capacity, 3))
+        self.gradient_count = int(gradient_mask.sum())
+        walk_capacity = (
+            point_capacity * options.walks if cuttable else min(point_capacity * options.walks, _BATCH_WALKS)
+        )
+        if not cuttable:
+            walk_capacity = max(walk_capacity // options.walks, 1) * options.walks
+        if point_capacity * options.walks >= 1 << 31:
+            raise ValueError(f"{point_capacity} points x {options.walks} walks are 2^31 or more; lower either")
+        self.landings = _empty_landings(walk_capacity, device)
+        self.bounds = wp.empty(walk_capacity if cuttable else 1, dtype=QuantizedExtents, device=device)
+        self._make_weights(vertex_capacity or domain.cage.vertex_count)
+
+    def require_vertices(self, vertex_count: int) -> None:
+        """Refuse a cage that does not fit the capacity."""
+        capacity = self.fixed_vertex_capacity
+        if capacity is not None and vertex_count > capacity:
+            raise ValueError(
+                f"the cage has {vertex_count} vertices, room was reserved for {capacity}: raise vertex_capacity"
+            )
+
+    def require_points(self, point_count: int) -> None:
+        """Refuse points that do not fit the capacity."""
+        if point_count > self.point_capacity:
+            raise ValueError(
+                f"{point_count} points, but room was reserved for {self.point_capacity}: raise point_capacity"
+            )
+
+    def grow_vertices(self, vertex_count: int) -> None:
+        """Make room for more cage vertices, where no capacity was asked for."""
+        if vertex_count > self.vertex_capacity:
+            weights, gradients = self.weights.numpy(), self.gradients.numpy()
+            self._make_weights(max(vertex_count, self.vertex_capacity * 3 // 2))
+            for array, old in ((self.weights, weights), (self.gradients, gradients)):
+                rows = array.numpy()
+                rows[:, : old.shape[1]] = old
+                array.assign(rows)
+
+    def place(self, indices: np.ndarray, points: np.ndarray, keys: np.ndarray) -> None:
+        """Set points' rest positions [m] and keys; new points continue the count."""
+        self.point_count = max(self.point_count, int(indices.max(initial=-1)) + 1)
+        self._rest[indices] = points
+        _scatter(self.points.position, indices, self.domain.frame.to_unit(points).astype(np.float32))
+        _scatter(self.points.key, indices, keys)
+        components = np.full(len(indices), -1, np.int32)
+        inner = keys < 0
+        components[inner] = self.domain.components_of(points[inner])
+        _scatter(self.points.component, indices, components)
+
+    def group_points(self) -> None:
+        """Find the component of every point that is not on a wall again."""
+        inner = np.flatnonzero(self.points.key.numpy()[: self.point_count] < 0)
+        _scatter(self.points.component, inner, self.domain.components_of(self._rest[inner]))
+
+    def run_all(self, stats: UpdateStats, *, progress: Callable[[float], None] | None = None) -> None:
+        """Walk, land and resolve every point, in batches where walks are not kept."""
+        walks = self.options.walks
+        stats.walk_count = stats.rewalked = self.point_count * walks
+        batch = self.point_count if self.cuttable else max(1, self.landings.key.size // walks)
+        no_work = wp.zeros(0, dtype=wp.int32, device=self.domain.device)
+        for first in range(0, self.point_count, max(batch, 1)):
+            count = min(batch, self.point_count - first)
+
+            def report(fraction: float, first: int = first, count: int = count) -> None:
+                progress((first + fraction * count) / self.point_count)
+
+            self.walk(no_work, stats, first_point=first, count=count * walks, progress=progress and report)
+            self.land(no_work, stats, first_point=first, count=count * walks, part="rewalk")
+            self.resolve(np.arange(first, first + count), stats, first_point=first)
+
+    def walk(
+        self,
+        work: wp.array,
+        stats: UpdateStats,
+        *,
+        first_point: int = 0,
+        count: int | None = None,
+        progress: Callable[[float], None] | None = None,
+    ) -> None:
+        """Walk the walks listed in ``work``, or the first ``count`` where it is empty."""
+        kernel = make_walk_kernel(distance=self.domain.distance, bounded=self.cuttable)
+        options, domain = self.options, self.domain
+        inputs = [work, options.walks, first_point * options.walks, wp.uint32(options.seed), self.points]
+        inputs += [domain.walls.data, domain.grid.cells, options.epsilon, options.max_steps]
+        inputs += [self.landings, self.bounds]
+        with stats.time("rewalk", domain.device):
+            launch(kernel, work.size if count is None else count, inputs, device=domain.device, progress=progress)
+
+    def land(
+        self,
+        work: wp.array,
+        stats: UpdateStats,
+        *,
+        first_point: int = 0,
+        count: int | None = None,
+        part: str = "rewalk",
+    ) -> None:
+        """Evaluate the landings of the walks in ``work`` on the faces as they are."""
+        kernel = make_land_kernel(nested=self.domain.has_nested_faces)
+        options, domain = self.options, self.domain
+        inputs = [work, options.walks, first_point * options.walks, wp.uint32(options.seed), self.points]
+        inputs += [domain.faces, self.landings, options.epsilon, options.max_steps]
+        with stats.time(part, domain.device):
+            launch(kernel, work.size if count is None else count, inputs, device=domain.device)
+
+    def resolve(self, points: np.ndarray, stats: UpdateStats, *, first_point: int = 0) -> None:
+        """Reduce the landings of the given points to weights and gradients."""
+        if not len(points):
+            return
+        options, domain = self.options, self.domain
+        vertex_count = domain.cage.vertex_count
+        kernel = make_resolve_kernel(correction=options.correction, gradients=self.gradient_count > 0)
+        slot_bytes = 8 * (FEATURE_COUNT + 3) * vertex_count
+        batch = max(1, min(len(points), _BATCH_BYTES // slot_bytes))
+        with stats.time("resolve", domain.device):
+            moments = _empty_moments(batch, vertex_count, domain.device)
+            rows = wp.array(points.astype(np.int32), dtype=wp.int32, device=domain.device)
+            for first in range(0, len(points), batch):
+                inputs = [first, rows, moments, options.walks, first_point, wp.uint32(options.seed), options.degree]
+                inputs += [domain.frame.half_side, vertex_count, self.points]
+                inputs += [domain.faces, self.landings, self.weights, self.gradients, self.degrees]
+                launch(kernel, min(batch, len(points) - first), inputs, device=domain.device, smallest_chunk=16)
+            stats.resolved_points += len(points)
+            if self.cuttable:
+                stats.capped = count_capped(self.landings.key[: self.point_count * options.walks], int(CAPPED))
+
+    def memory(self) -> dict[str, int]:
+        """Bytes of each part on the device."""
+        landings = [getattr(self.landings, name) for name in LANDING_DTYPES]
+        return {
+            "weights": _bytes(self.weights),
+            "gradients": _bytes(self.gradients),
+            "landings": sum(map(_bytes, landings)) if self.cuttable else 0,
+            "bounds": _bytes(self.bounds) if self.cuttable else 0,
+            "points": byte_count(self.points),
+            "walls": self.domain.walls.byte_count,
+            "grid": self.domain.grid.byte_count,
+        }
+
+    def _make_weights(self, vertex_capacity: int) -> None:
+        self.vertex_capacity = vertex_capacity
+        device = self.domain.device
+        self.weights = wp.zeros((self.point_capacity, vertex_capacity), dtype=float, device=device)
+        self.gradients = wp.zeros((self.gradient_count, vertex_capacity), dtype=wp.vec3, device=device)
+
+
+def _empty_landings(count: int, device: wp.context.Device) -> Landings:
+    landings = Landings()
+    for name, dtype in LANDING_DTYPES.items():
+        setattr(landings, name, wp.empty(count, dtype=dtype, device=device))
+    return landings
+
+
+def _empty_moments(slots: int, vertex_count: int, device: wp.context.Device) -> Moments:
+    moments = Moments()
+    moments.value = wp.empty((slots, vertex_count), dtype=Features, device=device)
+    moments.slope = wp.empty((slots, vertex_count), dtype=wp.vec3d, device=device)
+    return moments
+
+
+def _scatter(array: wp.array, indices: np.ndarray, values: np.ndarray) -> None:
+    """Write rows of a device array in place."""
+    if len(indices):
+        rows = array.numpy()
+        rows[indices] = values
+        array.assign(rows)
+
+
+def _bytes(array: wp.array) -> int:
+    return array.size * wp.types.type_size_in_bytes(array.dtype)

@@ -1,0 +1,203 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Walls: the triangles that stop walks, append-only.
+
+The cage's faces are walls from the start; every swept piece of a cut is appended (design: "walls are append-only,
+faces change"). A triangle knows its wall; a wall is a plane with one side (a face of the cage) or two (a cut).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import warp as wp
+
+from .frame import UnitFrame
+
+wp.set_module_options({"enable_backward": False})
+
+_TIE = wp.constant(1.00001)
+_TINY = wp.constant(1.0e-12)
+
+
+@wp.struct
+class WallTriangles:
+    """Triangles in the unit frame, shape (triangle_count,) each.
+
+    ``inward_k`` is the unit normal, in the plane, of the edge that starts at corner k, and points into the triangle.
+    """
+
+    corner_0: wp.array[wp.vec3]
+    corner_1: wp.array[wp.vec3]
+    corner_2: wp.array[wp.vec3]
+    inward_0: wp.array[wp.vec3]
+    inward_1: wp.array[wp.vec3]
+    inward_2: wp.array[wp.vec3]
+    normal: wp.array[wp.vec3]
+    wall: wp.array[wp.int32]
+    two_sided: wp.array[wp.int32]
+    count: int
+
+
+@wp.struct
+class Nearest:
+    """The wall triangle nearest to a point: squared distance, triangle, closest point."""
+
+    distance_squared: float
+    triangle: int
+    point: wp.vec3
+
+
+@wp.func
+def closest_point_on_segment(a: wp.vec3, b: wp.vec3, x: wp.vec3) -> wp.vec3:
+    """Closest point of the segment from ``a`` to ``b``."""
+    ab = b - a
+    length_squared = wp.dot(ab, ab)
+    if length_squared <= 0.0:
+        return a
+    return a + ab * wp.clamp(wp.dot(ab, x - a) / length_squared, 0.0, 1.0)
+
+
+@wp.func
+def closest_point_on_triangle(triangles: WallTriangles, t: int, x: wp.vec3) -> wp.vec3:
+    """Closest point of a triangle, by the edges that ``x`` is outside of.
+
+    Outside is decided against unit edge normals that were made in float64, so the slivers that cuts leave are as
+    exact as any other triangle (products of barycentric areas are not, in float32).
+    """
+    a = triangles.corner_0[t]
+    b = triangles.corner_1[t]
+    c = triangles.corner_2[t]
+    outside_0 = wp.dot(triangles.inward_0[t], x - a) < 0.0
+    outside_1 = wp.dot(triangles.inward_1[t], x - b) < 0.0
+    outside_2 = wp.dot(triangles.inward_2[t], x - c) < 0.0
+    if not (outside_0 or outside_1 or outside_2):
+        return x - triangles.normal[t] * wp.dot(triangles.normal[t], x - a)
+    best = a
+    best_squared = float(1.0e30)
+    if outside_0:
+        point = closest_point_on_segment(a, b, x)
+        best = point
+        best_squared = wp.length_sq(x - point)
+    if outside_1:
+        point = closest_point_on_segment(b, c, x)
+        squared = wp.length_sq(x - point)
+        if squared < best_squared:
+            best = point
+            best_squared = squared
+    if outside_2:
+        point = closest_point_on_segment(c, a, x)
+        squared = wp.length_sq(x - point)
+        if squared < best_squared:
+            best = point
+            best_squared = squared
+    return best
+
+
+@wp.func
+def plane_distance(triangles: WallTriangles, t: int, x: wp.vec3) -> float:
+    """Signed distance from the triangle's plane, measured from a corner to keep the digits."""
+    return wp.dot(triangles.normal[t], x - triangles.corner_0[t])
+
+
+@wp.func
+def nearer(triangles: WallTriangles, t: int, x: wp.vec3, best: Nearest) -> Nearest:
+    """Keep the nearer of ``best`` and triangle ``t``; on a tie the lower index.
+
+    The plane's distance rejects most triangles first. Its margin is wider than the rounding of either distance, so
+    the result does not depend on the order in which triangles are offered.
+    """
+    off = plane_distance(triangles, t, x)
+    if off * off > best.distance_squared * _TIE + _TINY:
+        return best
+    point = closest_point_on_triangle(triangles, t, x)
+    distance_squared = wp.length_sq(x - point)
+    if distance_squared < best.distance_squared or (distance_squared == best.distance_squared and t < best.triangle):
+        best.distance_squared = distance_squared
+        best.triangle = t
+        best.point = point
+    return best
+
+
+@wp.func
+def nearest_of_all(triangles: WallTriangles, x: wp.vec3, best: Nearest) -> Nearest:
+    """The nearest wall triangle, by all of them: the reference."""
+    for t in range(triangles.count):
+        best = nearer(triangles, t, x, best)
+    return best
+
+
+@wp.kernel(enable_backward=False)
+def measure_distance(offset: int, triangles: WallTriangles, points: wp.array[wp.vec3], distance: wp.array[float]):
+    """Distance of points to the nearest of all walls."""
+    i = offset + wp.tid()
+    nearest = Nearest()
+    nearest.distance_squared = 1.0e30
+    nearest = nearest_of_all(triangles, points[i], nearest)
+    distance[i] = wp.sqrt(nearest.distance_squared)
+
+
+class Walls:
+    """The walls of one cage and of its cuts, on a device.
+
+    Args:
+        frame: The unit frame of the cage.
+        device: Where the triangles live.
+    """
+
+    def __init__(self, frame: UnitFrame, *, device: wp.context.Device) -> None:
+        self.frame = frame
+        self.device = device
+        self.triangle_count = 0
+        self._rows: dict[str, np.ndarray] = {}
+        self.data = WallTriangles()
+
+    def append(self, corners: np.ndarray, walls: np.ndarray, normals: np.ndarray, two_sided: np.ndarray) -> range:
+        """Append triangles and return their indices.
+
+        Args:
+            corners: Rest positions [m], shape (t, 3, 3).
+            walls: Wall of each triangle, shape (t,).
+            normals: The wall's unit normal for each triangle, shape (t, 3).
+            two_sided: Whether walks land on both sides, shape (t,).
+        """
+        first = self.triangle_count
+        rows = _triangle_rows(self.frame.to_unit(corners), normals)
+        rows["wall"] = walls.astype(np.int32)
+        rows["two_sided"] = two_sided.astype(np.int32)
+        self._rows = {
+            name: np.concatenate([self._rows[name], row]) if self._rows else row for name, row in rows.items()
+        }
+        self.triangle_count = first + len(corners)
+        self._upload()
+        return range(first, self.triangle_count)
+
+    def _upload(self) -> None:
+        data = WallTriangles()
+        for name, rows in self._rows.items():
+            dtype = wp.vec3 if rows.ndim == 2 else wp.int32
+            setattr(data, name, wp.array(rows, dtype=dtype, device=self.device))
+        data.count = self.triangle_count
+        self.data = data
+
+    @property
+    def byte_count(self) -> int:
+        """Bytes on the device."""
+        return sum(rows.nbytes for rows in self._rows.values())
+
+
+def _triangle_rows(corners: np.ndarray, normals: np.ndarray) -> dict[str, np.ndarray]:
+    """Corners, edge normals and normals in float32, from unit-frame corners (t, 3, 3) in float64.
+
+    Winding is made to agree with the wall's normal, so that the edge normals point inward.
+    """
+    area = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), normals)
+    corners = np.where((area < 0.0)[:, None, None], corners[:, ::-1], corners)
+    rows = {"normal": normals.astype(np.float32)}
+    for k in range(3):
+        edge = corners[:, (k + 1) % 3] - corners[:, k]
+        inward = np.cross(normals, edge)
+        length = np.linalg.norm(inward, axis=1, keepdims=True)
+        rows[f"corner_{k}"] = corners[:, k].astype(np.float32)
+        rows[f"inward_{k}"] = (inward / np.where(length > 0.0, length, 1.0)).astype(np.float32)
+    return rows

@@ -1,0 +1,193 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Adding cage bodies to a Newton model.
+
+The degrees of freedom of a body are Newton particles: one for each vertex that its cage has or may get by cuts.
+They carry no ACTIVE flag, so other solvers and the collision pipeline leave them alone. With a contact radius, the
+points of the embedded surface are particles too: ACTIVE, without mass, moved by the cage.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import newton
+import numpy as np
+import warp as wp
+
+from ..cage import Cage
+from ..elastic import Material
+from ..surface import Surface, check_embedded
+from .definition import BodyDefinition, Capacity
+
+FREQUENCY = "cagecut:body"
+
+_ROWS = (
+    ("definition", str, None),
+    ("body_label", str, None),
+    ("vertex_start", wp.int32, "particle"),
+    ("surface_start", wp.int32, "particle"),
+    ("body_world", wp.int32, "world"),
+)
+
+
+def register_custom_attributes(builder: newton.ModelBuilder) -> None:
+    """Declare the rows that describe cage bodies; calling it again changes nothing."""
+    frequency = newton.ModelBuilder.CustomFrequency(
+        name="body", namespace="cagecut", label_attribute="cagecut:body_label"
+    )
+    builder.add_custom_frequency(frequency)
+    for name, dtype, references in _ROWS:
+        builder.add_custom_attribute(
+            newton.ModelBuilder.CustomAttribute(
+                name=name,
+                namespace="cagecut",
+                dtype=dtype,
+                frequency=FREQUENCY,
+                references=references,
+                default="" if dtype is str else -1,
+            )
+        )
+
+
+def add_cage_body(
+    builder: newton.ModelBuilder,
+    cage: Cage,
+    mesh: Surface | tuple[np.ndarray, np.ndarray] | newton.Mesh,
+    *,
+    material: Material | None = None,
+    xform: wp.transform | None = None,
+    velocity: Sequence[float] = (0.0, 0.0, 0.0),
+    fixed: np.ndarray | Sequence[int] | None = None,
+    walks: int | None = None,
+    quadrature: int | None = None,
+    capacity: Capacity | None = None,
+    cuttable: bool = True,
+    contact_radius: float | None = None,
+    seed: int = 0,
+    label: str | None = None,
+    **options: object,
+) -> int:
+    """Add an elastic body that a cage deforms.
+
+    Args:
+        builder: The model builder, with ``SolverCageCut.register_custom_attributes`` called.
+        cage: The cage, in its rest frame [m].
+        mesh: The embedded surface, wholly inside the cage: a ``Surface``, a ``newton.Mesh``, or points
+            (n, 3) [m] and triangles (m, 3).
+        material: The elastic material; the default is soft rubber.
+        xform: Pose of the rest frame in the world.
+        velocity: Initial velocity [m/s].
+        fixed: Cage vertices that do not move: their indices, or a mask over all. A vertex that a cut makes among
+            fixed ones is fixed too.
+        walks: Walks a point; 256 on a CPU and 2048 (the paper's) on CUDA by default.
+        quadrature: Wanted number of quadrature points, by default 8 for each cage vertex and at least 300. 0 makes a
+            body that is moved by its cage vertices alone, without elasticity.
+        capacity: Room for cuts; by default enough for several.
+        cuttable: Whether the body can be cut. Without, no walk cache is kept.
+        contact_radius: Makes the surface points collide as particles of this radius [m]; None for no contact.
+        seed: Seed of walks and quadrature.
+        label: Name of the body.
+        options: Further keyword options of ``HarmonicCoordinates``.
+
+    Returns:
+        The body's index, for ``SolverCageCut``.
+
+    Raises:
+        TypeError: An argument has the wrong type.
+        ValueError: Attributes are not registered, a mesh point lies outside the cage, or a value is out of range.
+    """
+    if not isinstance(cage, Cage):
+        raise TypeError(f"cage must be a Cage, got {type(cage).__name__}")
+    if f"{FREQUENCY}" not in builder.custom_frequencies:
+        raise ValueError("call SolverCageCut.register_custom_attributes(builder) before add_cage_body")
+    surface = _surface_of(mesh)
+    check_embedded(cage, surface.points)
+    index = len(builder.custom_attributes["cagecut:definition"].values or [])
+    if capacity is None:
+        capacity = Capacity.for_cuts(cage, surface) if cuttable else Capacity.without_cuts(cage, surface)
+    capacity.require(cage, surface)
+    definition = BodyDefinition(
+        label=label or f"cage_body_{index}",
+        cage=cage,
+        surface=surface,
+        material=material or Material(),
+        fixed=_fixed_mask(fixed, cage.vertex_count),
+        walks=walks or (2048 if wp.get_device().is_cuda else 256),
+        seed=seed,
+        quadrature_count=max(300, 8 * cage.vertex_count) if quadrature is None else quadrature,
+        cuttable=cuttable,
+        capacity=capacity,
+        contact_radius=contact_radius,
+        options=options,
+    )
+    xform = xform or wp.transform_identity()
+    vertex_start = _add_particles(builder, cage.vertices, capacity.vertices, xform, velocity, radius=0.0, active=False)
+    surface_start = -1
+    if contact_radius is not None:
+        points, room = surface.points, capacity.surface_points
+        surface_start = _add_particles(builder, points, room, xform, velocity, radius=contact_radius, active=True)
+    builder.add_custom_values(
+        **{
+            # Newton keeps string attributes as the Python objects that they are: the definition rides in one.
+            "cagecut:definition": definition,
+            "cagecut:body_label": definition.label,
+            "cagecut:vertex_start": vertex_start,
+            "cagecut:surface_start": surface_start,
+        }
+    )
+    return index
+
+
+def _surface_of(mesh: Surface | tuple[np.ndarray, np.ndarray] | newton.Mesh) -> Surface:
+    if isinstance(mesh, Surface):
+        return mesh
+    if isinstance(mesh, newton.Mesh):
+        return Surface(np.asarray(mesh.vertices), np.asarray(mesh.indices).reshape(-1, 3))
+    if isinstance(mesh, tuple) and len(mesh) == 2:
+        return Surface(*mesh)
+    raise TypeError(f"mesh must be a Surface, a newton.Mesh or (points, triangles), got {type(mesh).__name__}")
+
+
+def _fixed_mask(fixed: np.ndarray | Sequence[int] | None, vertex_count: int) -> np.ndarray:
+    mask = np.zeros(vertex_count, dtype=bool)
+    if fixed is None:
+        return mask
+    fixed = np.asarray(fixed)
+    if fixed.dtype == bool:
+        if fixed.shape != (vertex_count,):
+            raise ValueError(f"the mask fixed must have the shape ({vertex_count},), got {fixed.shape}")
+        return fixed.copy()
+    wrong = fixed[(fixed < 0) | (fixed >= vertex_count)]
+    if wrong.size:
+        raise ValueError(f"fixed names vertex {wrong.flat[0]}, but the cage has {vertex_count} vertices")
+    mask[fixed] = True
+    return mask
+
+
+def _add_particles(
+    builder: newton.ModelBuilder,
+    points: np.ndarray,
+    capacity: int,
+    xform: wp.transform,
+    velocity: Sequence[float],
+    *,
+    radius: float,
+    active: bool,
+) -> int:
+    """Add particles at rest positions and spare ones behind them; returns the first index."""
+    start = builder.particle_count
+    rotation = np.array(wp.quat_to_matrix(wp.transform_get_rotation(xform)), dtype=np.float64).reshape(3, 3)
+    placed = np.zeros((capacity, 3))
+    placed[: len(points)] = points @ rotation.T + np.array(wp.transform_get_translation(xform), dtype=np.float64)
+    placed[len(points) :] = placed[0]
+    flags = np.where(np.arange(capacity) < len(points), int(newton.ParticleFlags.ACTIVE) if active else 0, 0)
+    builder.add_particles(
+        pos=placed.tolist(),
+        vel=[list(map(float, velocity))] * capacity,
+        mass=[0.0] * capacity,
+        radius=[radius] * capacity,
+        flags=flags.tolist(),
+    )
+    return start

@@ -1,0 +1,171 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""``SolverCageCut``: elastic bodies in cages, cut while they move, as a Newton solver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import newton
+import numpy as np
+import warp as wp
+
+from ..cage import Blade
+from .body import CageBody
+from .body_cut import BodyCut
+from .builder import register_custom_attributes
+from .plan import PlanEntry, plan_of
+from .report import CutReport
+from .viewing import SurfaceViewer
+
+
+class SolverCageCut(newton.solvers.SolverBase):
+    """Simulates the cage bodies of a model and cuts them.
+
+    Each body is a reduced elastic model whose shape functions are the harmonic coordinates of its cage, advanced by
+    one Newton step of backward Euler a step (paper, section 6.1). ``step`` only launches kernels, so it can be captured
+    in a CUDA graph, which stays valid across cuts.
+
+    Args:
+        model: The model, with bodies added by ``add_cage_body``.
+        progress: Called while the weights are computed, with the finished fraction between 0 and 1.
+
+    Raises:
+        ValueError: The model has no cage bodies.
+    """
+
+    def __init__(self, model: newton.Model, *, progress: Callable[[float], None] | None = None) -> None:
+        super().__init__(model)
+        rows = getattr(model, "cagecut", None)
+        definitions = list(rows.definition) if rows is not None else []
+        if not definitions:
+            raise ValueError(
+                "the model has no cage bodies: call SolverCageCut.register_custom_attributes(builder) and "
+                "add_cage_body(builder, ...) before builder.finalize()"
+            )
+        starts = zip(rows.vertex_start.numpy().tolist(), rows.surface_start.numpy().tolist(), strict=True)
+        count = len(definitions)
+        self._bodies = [
+            CageBody(
+                model,
+                definition,
+                vertex_start,
+                surface_start,
+                progress=progress and (lambda fraction, done=index: progress((done + fraction) / count)),
+            )
+            for index, (definition, (vertex_start, surface_start)) in enumerate(zip(definitions, starts, strict=True))
+        ]
+        self._viewer = SurfaceViewer()
+
+    @classmethod
+    def register_custom_attributes(cls, builder: newton.ModelBuilder) -> None:
+        """Declare what ``add_cage_body`` needs of a builder; calling it again changes nothing."""
+        register_custom_attributes(builder)
+
+    @property
+    def bodies(self) -> tuple[CageBody, ...]:
+        """The cage bodies, in the order in which they were added."""
+        return tuple(self._bodies)
+
+    def body(self, body: int | str) -> CageBody:
+        """A body by index or label.
+
+        Raises:
+            ValueError: There is no such body.
+        """
+        for index, candidate in enumerate(self._bodies):
+            if body == candidate.label or (isinstance(body, int | np.integer) and body == index):
+                return candidate
+        labels = ", ".join(candidate.label for candidate in self._bodies)
+        raise ValueError(f"there is no cage body {body!r}; there are {len(self._bodies)}: {labels}")
+
+    def step(
+        self,
+        state_in: newton.State,
+        state_out: newton.State,
+        control: newton.Control | None,
+        contacts: newton.Contacts | None,
+        dt: float,
+        *,
+        observables: newton.solvers.SolverBase.Observables | None = None,
+    ) -> None:
+        """Advance all cage bodies by one step; rigid bodies are copied through.
+
+        Args:
+            state_in: State before the step.
+            state_out: State after it; may be the same.
+            control: Not used.
+            contacts: Contacts of Newton's collision pipeline, for bodies with a contact radius.
+            dt: Time step [s].
+            observables: Not supported beyond Newton's checks.
+
+        Raises:
+            ValueError: The contacts were reduced by body pairs.
+        """
+        self.validate_observables(observables, contacts)
+        self._require_unreduced_contacts(contacts)
+        if state_in is not state_out:
+            for name in ("body_q", "body_qd", "joint_q", "joint_qd"):
+                source, target = getattr(state_in, name, None), getattr(state_out, name, None)
+                if source is not None and target is not None:
+                    wp.copy(target, source)
+        for body in self._bodies:
+            body.step(state_in, state_out, contacts, dt)
+
+    def begin_cut(self, body: int | str, blade: Blade) -> BodyCut:
+        """Put a blade to a body; nothing changes before it advances.
+
+        Args:
+            body: Index or label of the body.
+            blade: The blade, in the rest frame of the body's cage.
+
+        Raises:
+            ValueError: There is no such body, or it was added with cuttable=False.
+        """
+        return BodyCut(self.body(body), blade)
+
+    def advance_cut(
+        self,
+        cut: BodyCut,
+        by: float | None = None,
+        *,
+        to: float | None = None,
+        states: Sequence[newton.State] = (),
+    ) -> CutReport:
+        """Advance a cut: the model edit. A failed edit leaves model, states and weights as they were.
+
+        Args:
+            cut: The cut.
+            by: Length to advance by, in the rest frame [m].
+            to: Depth to advance to instead, from where the blade first touches [m].
+            states: All states in use; new cage vertices get their positions and velocities in each.
+
+        Returns:
+            What was done.
+
+        Raises:
+            ValueError: Neither or both of ``by`` and ``to`` are given, the cut would go back, another cut has changed
+                the body since this one began, or the result does not fit the reserved capacity.
+        """
+        if (by is None) == (to is None):
+            raise ValueError("advance_cut needs either a length to advance by or to=depth")
+        return cut.advance(cut.depth + by if to is None else to, tuple(states))
+
+    def surface(self, state: newton.State, body: int | str = 0) -> tuple[np.ndarray, np.ndarray]:
+        """The surface of a body in a state.
+
+        Returns:
+            Points in the world [m], shape (n, 3), float32, and triangles, shape (m, 3), int32.
+        """
+        found = self.body(body)
+        return found.surface_points(state).numpy().copy(), np.array(found.surface.triangles, dtype=np.int32)
+
+    def log(self, viewer: newton.viewer.ViewerBase, state: newton.State) -> None:
+        """Show the surfaces in any Newton viewer, with the topology of this frame; caps have a colour of their own."""
+        for body in self._bodies:
+            self._viewer.log(viewer, body, state)
+
+    def plan(self) -> list[PlanEntry]:
+        """What the scene uses, what was left out and why, and the bytes of each."""
+        return [entry for body in self._bodies for entry in plan_of(body)]

@@ -1,0 +1,70 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""Checks that a surface lies in the cage that is to carry it.
+
+Section 3 of the paper defines the coordinates for points inside the cage only.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..cage import Cage
+
+_CHUNK = 1 << 18
+
+
+def check_embedded(cage: Cage, points: np.ndarray) -> None:
+    """Check that points lie inside a cage or, within its tolerance, on it.
+
+    Args:
+        cage: The cage.
+        points: Points, shape (point_count, 3) [m].
+
+    Raises:
+        ValueError: If some points are outside; the text has their count, the worst one and its distance.
+    """
+    points = np.asarray(points, dtype=np.float64)
+    outside = np.flatnonzero(~cage.contains(points))
+    if len(outside) == 0:
+        return
+    distance = boundary_distances(cage, points[outside])
+    outside, distance = outside[distance > cage.length_tolerance], distance[distance > cage.length_tolerance]
+    if len(outside):
+        worst = int(np.argmax(distance))
+        raise ValueError(
+            f"{len(outside)} of {len(points)} points lie outside the cage, point {outside[worst]} the farthest, by "
+            f"{distance[worst]:.6g}; make the cage larger or move the points into it"
+        )
+
+
+def boundary_distances(cage: Cage, points: np.ndarray) -> np.ndarray:
+    """Distance of points to the faces of a cage, shape (point_count,) [m].
+
+    Args:
+        cage: The cage.
+        points: Points, shape (point_count, 3) [m].
+    """
+    corners = cage.vertices[cage.triangles]
+    step = max(1, _CHUNK // len(corners))
+    parts = [_triangle_distances(points[i : i + step], corners).min(axis=1) for i in range(0, len(points), step)]
+    return np.concatenate(parts) if parts else np.zeros(0)
+
+
+def _triangle_distances(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Distance of each point to each triangle, shape (point_count, triangle_count) [m]."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    normal = np.cross(b - a, c - a)
+    length = np.linalg.norm(normal, axis=1, keepdims=True)
+    normal = normal / np.where(length > 0.0, length, 1.0)
+    above = np.ones((len(points), len(corners)), dtype=bool)
+    nearest = np.full((len(points), len(corners)), np.inf)
+    for p, q in ((a, b), (b, c), (c, a)):
+        edge = q - p
+        offset = points[:, None] - p
+        square = np.einsum("ij,ij->i", edge, edge)
+        t = np.clip(np.einsum("pij,ij->pi", offset, edge) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+        nearest = np.minimum(nearest, np.linalg.norm(offset - t[..., None] * edge, axis=2))
+        above &= np.einsum("pij,ij->pi", offset, np.cross(normal, edge)) >= 0.0
+    height = np.abs(np.einsum("pij,ij->pi", points[:, None] - a, normal))
+    return np.where(above & (length[:, 0] > 0.0), height, nearest)

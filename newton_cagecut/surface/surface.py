@@ -1,0 +1,162 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""Surfaces: the detailed meshes that a cage carries.
+
+Section 6.3 of the paper calls this the embedded mesh. Positions are in the rest frame.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from ..cage import PolygonMesh
+from ..cage.winding import winding_numbers
+
+
+class Surface:
+    """A triangle mesh at rest, closed or open, with what earlier cuts left on it; immutable."""
+
+    def __init__(
+        self,
+        points: np.ndarray,
+        triangles: np.ndarray,
+        *,
+        uvs: np.ndarray | None = None,
+        triangle_cap: np.ndarray | None = None,
+        point_key: np.ndarray | None = None,
+    ):
+        """Validate and build a surface.
+
+        Args:
+            points: Rest positions, shape (point_count, 3) [m].
+            triangles: Point ids, counterclockwise seen from outside, shape (triangle_count, 3).
+            uvs: Texture coordinates of the points, shape (point_count, 2).
+            triangle_cap: Wall of the cut that each triangle caps, -1 for the original surface, shape (triangle_count,).
+            point_key: ``2 * wall + side`` of the wall on which each point lies, -1 inside, shape (point_count,).
+
+        Raises:
+            TypeError: If something is not numbers, or the triangles not integers.
+            ValueError: If a shape, a value or an index is wrong; the text names the culprit.
+        """
+        self.points = _as_floats(points, "points", 3)
+        self.triangles = _as_triangles(triangles, len(self.points))
+        self.uvs = None if uvs is None else _as_floats(uvs, "uvs", 2)
+        if self.uvs is not None and len(self.uvs) != len(self.points):
+            raise ValueError(f"the surface has {len(self.points)} points but {len(self.uvs)} uvs; give each one")
+        self.triangle_cap = _as_labels(triangle_cap, "triangle_cap", len(self.triangles))
+        self.point_key = _as_labels(point_key, "point_key", len(self.points))
+        self._freeze()
+
+    @classmethod
+    def _assembled(
+        cls,
+        points: np.ndarray,
+        triangles: np.ndarray,
+        uvs: np.ndarray | None,
+        triangle_cap: np.ndarray,
+        point_key: np.ndarray,
+    ) -> Surface:
+        """A surface that a cut made, taken as it is."""
+        surface = cls.__new__(cls)
+        surface.points, surface.triangles, surface.uvs = points, triangles, uvs
+        surface.triangle_cap, surface.point_key = triangle_cap, point_key
+        surface._freeze()
+        return surface
+
+    def _freeze(self) -> None:
+        for array in (self.points, self.triangles, self.uvs, self.triangle_cap, self.point_key):
+            if array is not None:
+                array.setflags(write=False)
+
+    def __repr__(self) -> str:
+        return f"Surface(point_count={self.point_count}, triangle_count={self.triangle_count})"
+
+    @property
+    def point_count(self) -> int:
+        """Number of points."""
+        return len(self.points)
+
+    @property
+    def triangle_count(self) -> int:
+        """Number of triangles."""
+        return len(self.triangles)
+
+    @cached_property
+    def mesh(self) -> PolygonMesh:
+        """The triangles with their half-edges."""
+        start = np.arange(0, 3 * self.triangle_count + 1, 3)
+        return PolygonMesh(self.points, start, self.triangles.reshape(-1).astype(np.int64))
+
+    @cached_property
+    def closed(self) -> bool:
+        """Whether every edge has exactly two triangles that run along it in opposite directions."""
+        return bool((self.mesh.twin >= 0).all())
+
+    @property
+    def volume(self) -> float:
+        """Enclosed volume, meaningful if closed [m^3]."""
+        return float(self.mesh.face_volume.sum())
+
+    @cached_property
+    def triangle_solid(self) -> np.ndarray:
+        """Number of the solid that each triangle bounds, shape (triangle_count,).
+
+        A solid is a component, or one with the inside-out components in it that are its cavities. Solids may overlap.
+        """
+        mesh = self.mesh
+        if mesh.component_count < 2:
+            return np.zeros(self.triangle_count, dtype=np.int64)
+        volumes = mesh.component_volumes
+        solid = np.arange(mesh.component_count)
+        cavities = np.flatnonzero(volumes < 0.0)
+        if len(cavities):
+            first = np.unique(mesh.vertex_component, return_index=True)[1][cavities]
+            triangles = self.triangles.astype(np.int64)
+            number = winding_numbers(self.points[first], self.points, triangles, mesh.face_component, len(volumes))
+            around = np.where((number > 0.5) & (volumes > 0.0), volumes, np.inf)
+            found = np.isfinite(around).any(axis=1)
+            solid[cavities[found]] = around[found].argmin(axis=1)
+        return solid[mesh.face_component]
+
+
+def _as_floats(values: np.ndarray, name: str, width: int) -> np.ndarray:
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"{name} of the surface must be numbers of shape (point_count, {width}): {error}") from None
+    if array.ndim != 2 or array.shape[1] != width:
+        raise ValueError(f"{name} of the surface must have shape (point_count, {width}), got {array.shape}")
+    bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
+    if len(bad):
+        raise ValueError(f"{name} of the surface: row {bad[0]} is not finite: {array[bad[0]].tolist()}")
+    return array
+
+
+def _as_triangles(values: np.ndarray, point_count: int) -> np.ndarray:
+    array = np.asarray(values)
+    if not np.issubdtype(array.dtype, np.integer):
+        raise TypeError(f"triangles of the surface must be integers, got {array.dtype}")
+    if array.ndim != 2 or array.shape[1] != 3 or len(array) == 0:
+        raise ValueError(f"triangles of the surface must have shape (triangle_count, 3), got {array.shape}")
+    bad = np.flatnonzero(((array < 0) | (array >= point_count)).any(axis=1))
+    if len(bad):
+        raise ValueError(
+            f"triangle {bad[0]} of the surface is {array[bad[0]].tolist()}, but there are only {point_count} points"
+        )
+    bad = np.flatnonzero((array == np.roll(array, 1, axis=1)).any(axis=1))
+    if len(bad):
+        raise ValueError(f"triangle {bad[0]} of the surface uses a point twice: {array[bad[0]].tolist()}; remove it")
+    return array.astype(np.int32)
+
+
+def _as_labels(values: np.ndarray | None, name: str, count: int) -> np.ndarray:
+    if values is None:
+        return np.full(count, -1, dtype=np.int32)
+    array = np.asarray(values)
+    if not np.issubdtype(array.dtype, np.integer):
+        raise TypeError(f"{name} of the surface must be integers, got {array.dtype}")
+    if array.shape != (count,):
+        raise ValueError(f"{name} of the surface must have shape ({count},), got {array.shape}")
+    return array.astype(np.int32)

@@ -1,0 +1,22 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""USD: cages and surfaces in, animations with changing topology out."""
+
+from .animation import AnimationWriter
+from .body_frame import BodyFrame
+from .mesh_data import MeshData
+from .read import read_cage, read_mesh, read_surface
+from .validate import validate_animation
+from .write import write_cage, write_mesh
+
+__all__ = [
+    "AnimationWriter",
+    "BodyFrame",
+    "MeshData",
+    "read_cage",
+    "read_mesh",
+    "read_surface",
+    "validate_animation",
+    "write_cage",
+    "write_mesh",
+]

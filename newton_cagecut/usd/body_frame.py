@@ -1,0 +1,76 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""What one body looks like in one frame of an animation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .layers import flat_faces
+from .mesh_data import check_mesh
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class BodyFrame:
+    """What one body looks like in one frame, in metres.
+
+    Attributes:
+        name: Name of the body, the same in all frames.
+        points: Vertices of the surface [m], shape ``(n, 3)``.
+        triangles: Triangles of the surface, shape ``(m, 3)``.
+        triangle_cap: The wall of the cut whose cap a triangle belongs to, or -1 on the skin, shape ``(m,)``.
+            ``None``: all skin.
+        rest_points: Vertices of the surface at rest [m], shape ``(n, 3)``, which tell the two sides of a cut apart
+            however far they have come. ``None``: ``points`` tell them. Read when the triangles change.
+        cage_points: Vertices of the cage [m], shape ``(k, 3)``, or ``None`` for no cage.
+        cage_faces: Polygons of the cage.
+        skin_color: Linear RGB of the skin. Read at the first frame of the body.
+        cap_color: Linear RGB of the caps. Read at the first frame of the body.
+    """
+
+    name: str
+    points: np.ndarray
+    triangles: np.ndarray
+    triangle_cap: np.ndarray | None = None
+    rest_points: np.ndarray | None = None
+    cage_points: np.ndarray | None = None
+    cage_faces: Sequence[Sequence[int]] = ()
+    skin_color: tuple[float, float, float] = (0.83, 0.30, 0.10)
+    cap_color: tuple[float, float, float] = (0.95, 0.72, 0.52)
+
+    def checked(self) -> BodyFrame:
+        """Return the frame as NumPy arrays of the right types.
+
+        Raises:
+            ValueError: The arrays are empty, not finite or do not fit together.
+        """
+        points = _points(f"body {self.name}: points", self.points)
+        triangles = np.asarray(self.triangles, dtype=np.int32)
+        if triangles.ndim != 2 or triangles.shape[1] != 3:
+            raise ValueError(f"body {self.name}: triangles must have shape (m, 3), got {triangles.shape}")
+        check_mesh(f"the surface of body {self.name}", points, *flat_faces(triangles))
+        cap = np.full(len(triangles), -1) if self.triangle_cap is None else np.asarray(self.triangle_cap)
+        if cap.shape != (len(triangles),):
+            raise ValueError(f"body {self.name}: triangle_cap must have shape ({len(triangles)},), got {cap.shape}")
+        rest_points = (
+            points if self.rest_points is None else _points(f"body {self.name}: rest_points", self.rest_points)
+        )
+        if len(rest_points) != len(points):
+            raise ValueError(f"body {self.name}: rest_points must have shape {points.shape}, got {rest_points.shape}")
+        cage_points = self.cage_points
+        if cage_points is not None:
+            cage_points = _points(f"body {self.name}: cage_points", cage_points)
+            check_mesh(f"the cage of body {self.name}", cage_points, *flat_faces(self.cage_faces))
+        surface = {"points": points, "triangles": triangles, "triangle_cap": cap, "rest_points": rest_points}
+        return replace(self, **surface, cage_points=cage_points)
+
+
+def _points(label: str, values: np.ndarray) -> np.ndarray:
+    """Return ``values`` as float64 of shape ``(n, 3)``."""
+    points = np.asarray(values, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise ValueError(f"{label} must have shape (n, 3), got {points.shape}")
+    return points

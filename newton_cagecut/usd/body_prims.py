@@ -1,0 +1,115 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""The prims of one animated body: its surface, the subset of its caps and its cage."""
+
+from __future__ import annotations
+
+import numpy as np
+from pxr import Usd, UsdGeom, Vt
+
+from .body_frame import BodyFrame
+from .layers import color, extent, flat_faces, integers, vectors
+from .materials import bind_material
+from .normals import split_caps, vertex_normals
+
+_CAGE_COLOR = (0.25, 0.45, 0.85)
+
+
+class SampledMesh:
+    """A mesh prim whose topology gets a sample in the frames where it changes.
+
+    Between two samples with different numbers of points USD holds the points of the first but interpolates the
+    extent. So the extent of the second holds both.
+
+    Args:
+        stage: The stage.
+        path: Path of the prim, which is made.
+    """
+
+    def __init__(self, stage: Usd.Stage, path: str):
+        self.mesh = UsdGeom.Mesh.Define(stage, path)
+        self.mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+        self._points = np.zeros((0, 3))
+        self._counts = self._indices = np.zeros(0, dtype=np.int32)
+
+    def write(self, frame: float, points: np.ndarray, counts: np.ndarray, indices: np.ndarray) -> None:
+        """Write a sample."""
+        resized = len(points) != len(self._points)
+        self.mesh.GetPointsAttr().Set(vectors(points), frame)
+        self.mesh.GetExtentAttr().Set(extent(np.concatenate([self._points, points]) if resized else points), frame)
+        self._points = points
+        if not (np.array_equal(counts, self._counts) and np.array_equal(indices, self._indices)):
+            self.mesh.GetFaceVertexCountsAttr().Set(integers(counts), frame)
+            self.mesh.GetFaceVertexIndicesAttr().Set(integers(indices), frame)
+            self._counts, self._indices = counts, indices
+
+
+class BodyPrims:
+    """Writes the frames of one body.
+
+    Args:
+        stage: The stage.
+        path: Path of the body, which is made.
+        body: The body in its first frame.
+        since: The frame from which it is visible, or ``None`` for all.
+        normals: Whether to write normals. Caps get vertices of their own then, behind those of the skin.
+    """
+
+    def __init__(self, stage: Usd.Stage, path: str, body: BodyFrame, *, since: float | None, normals: bool):
+        root = UsdGeom.Xform.Define(stage, path)
+        if since is not None:
+            root.GetVisibilityAttr().Set(UsdGeom.Tokens.invisible, stage.GetStartTimeCode())
+            root.GetVisibilityAttr().Set(UsdGeom.Tokens.inherited, since)
+        self._stage, self._path, self._normals = stage, path, normals
+        self._cage: SampledMesh | None = None
+        self._surface = SampledMesh(stage, f"{path}/surface")
+        mesh = self._surface.mesh
+        if normals:
+            mesh.SetNormalsInterpolation(UsdGeom.Tokens.vertex)
+        bind_material(mesh.GetPrim(), body.skin_color)
+        self._colors = mesh.CreateDisplayColorPrimvar(UsdGeom.Tokens.uniform)
+        self._colors.Set(Vt.Vec3fArray([color(body.skin_color), color(body.cap_color)]))
+        no_faces = Vt.IntArray()
+        self._cap = UsdGeom.Subset.CreateGeomSubset(mesh, "cap", UsdGeom.Tokens.face, no_faces, "materialBind")
+        self._cap.GetIndicesAttr().Clear()
+        UsdGeom.Subset.SetFamilyType(mesh, "materialBind", UsdGeom.Tokens.nonOverlapping)
+        bind_material(self._cap.GetPrim(), body.cap_color)
+        self._topology: tuple[np.ndarray, ...] | None = None
+
+    def write(self, frame: float, body: BodyFrame, scale: float) -> None:
+        """Write one frame.
+
+        Args:
+            frame: Time code.
+            body: The body now, checked.
+            scale: Units of the stage in a metre.
+        """
+        topology = (np.array(len(body.points)), body.triangles, body.triangle_cap)
+        if self._topology is None or not all(map(np.array_equal, topology, self._topology)):
+            self._topology = tuple(values.copy() for values in topology)
+            self._change_topology(frame, body)
+        points = body.points[self._source] * scale
+        self._surface.write(frame, points, *flat_faces(self._triangles))
+        if self._normals:
+            self._surface.mesh.GetNormalsAttr().Set(vectors(vertex_normals(points, self._triangles)), frame)
+        if body.cage_points is not None:
+            cage = self._cage or self._new_cage()
+            cage.write(frame, body.cage_points * scale, *flat_faces(body.cage_faces))
+
+    def _change_topology(self, frame: float, body: BodyFrame) -> None:
+        """Take over other triangles or caps."""
+        self._source, self._triangles = np.arange(len(body.points)), body.triangles.copy()
+        if self._normals:
+            self._source, self._triangles = split_caps(body.rest_points, body.triangles, body.triangle_cap)
+        is_cap = body.triangle_cap >= 0
+        self._cap.GetIndicesAttr().Set(integers(np.flatnonzero(is_cap)), frame)
+        self._colors.CreateIndicesAttr().Set(integers(is_cap), frame)
+
+    def _new_cage(self) -> SampledMesh:
+        """Make the prim of the cage."""
+        self._cage = SampledMesh(self._stage, f"{self._path}/cage")
+        self._cage.mesh.CreatePurposeAttr(UsdGeom.Tokens.guide)
+        self._cage.mesh.CreateDoubleSidedAttr(True)
+        self._cage.mesh.CreateDisplayColorAttr([color(_CAGE_COLOR)])
+        self._cage.mesh.CreateDisplayOpacityPrimvar(UsdGeom.Tokens.constant).Set(Vt.FloatArray([0.25]))
+        return self._cage

@@ -1,0 +1,97 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""Stages in memory that are written to a file in one move, and the values that USD takes."""
+
+from __future__ import annotations
+
+import math
+import os
+from os import PathLike, fspath
+
+import numpy as np
+from pxr import Gf, Sdf, Tf, Usd, UsdGeom, Vt
+
+_EXTENSIONS = (".usd", ".usda", ".usdc")
+
+
+def checked_path(path: str | PathLike) -> str:
+    """Return ``path`` as text.
+
+    Raises:
+        ValueError: The name does not end in .usd, .usda or .usdc.
+        FileNotFoundError: The folder does not exist.
+    """
+    text = fspath(path)
+    if os.path.splitext(text)[1] not in _EXTENSIONS:
+        raise ValueError(f"{text}: the name of a USD file must end in {', '.join(_EXTENSIONS)}")
+    folder = os.path.dirname(os.path.abspath(text))
+    if not os.path.isdir(folder):
+        raise FileNotFoundError(f"{text}: there is no folder {folder}")
+    return text
+
+
+def new_stage(up_axis: str, meters_per_unit: float) -> Usd.Stage:
+    """Return an empty stage in memory with its metrics set and ``/World`` as its default prim.
+
+    Raises:
+        ValueError: The up axis is neither Y nor Z, or the unit is not a positive number.
+    """
+    if up_axis not in ("Y", "Z"):
+        raise ValueError(f'up_axis must be "Y" or "Z", got {up_axis!r}')
+    if not (math.isfinite(meters_per_unit) and meters_per_unit > 0.0):
+        raise ValueError(f"meters_per_unit must be positive, got {meters_per_unit}")
+    stage = Usd.Stage.CreateInMemory()
+    UsdGeom.SetStageUpAxis(stage, up_axis)
+    UsdGeom.SetStageMetersPerUnit(stage, meters_per_unit)
+    stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/World").GetPrim())
+    return stage
+
+
+def export_stage(stage: Usd.Stage, path: str) -> None:
+    """Write the stage beside ``path`` and move it there, so that the file is whole at any time.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    stem, extension = os.path.splitext(path)
+    part = f"{stem}.part{os.getpid()}{extension}"
+    try:
+        if not stage.GetRootLayer().Export(part):
+            raise OSError(f"{path} cannot be written")
+        os.replace(part, path)
+    except Tf.ErrorException as error:
+        raise OSError(f"{path} cannot be written: {error}") from error
+    finally:
+        if os.path.exists(part):
+            os.remove(part)
+    opened = Sdf.Layer.Find(path)
+    if opened:
+        opened.Reload(force=True)
+
+
+def vectors(values: np.ndarray) -> Vt.Vec3fArray:
+    """Return an array of shape ``(n, 3)`` as USD's float3[]."""
+    return Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(values, dtype=np.float32))
+
+
+def integers(values: np.ndarray) -> Vt.IntArray:
+    """Return an array of shape ``(n,)`` as USD's int[]."""
+    return Vt.IntArray.FromNumpy(np.ascontiguousarray(values, dtype=np.int32))
+
+
+def extent(points: np.ndarray) -> Vt.Vec3fArray:
+    """Return the two corners of the box around ``points``."""
+    return vectors(np.stack([points.min(axis=0), points.max(axis=0)]))
+
+
+def color(value: tuple[float, float, float]) -> Gf.Vec3f:
+    """Return a colour as USD's color3f."""
+    return Gf.Vec3f(*(float(channel) for channel in value))
+
+
+def flat_faces(faces: np.ndarray | tuple[tuple[int, ...], ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Return vertices of each face and all vertex indices of ``faces``, an ``(m, 3)`` array or polygons."""
+    if isinstance(faces, np.ndarray):
+        return np.full(len(faces), faces.shape[1], dtype=np.int32), faces.reshape(-1).astype(np.int32)
+    counts = np.array([len(face) for face in faces], dtype=np.int32)
+    return counts, np.array([vertex for face in faces for vertex in face], dtype=np.int32)

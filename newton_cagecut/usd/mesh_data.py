@@ -1,0 +1,79 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""A polygon mesh as plain arrays, on its way between USD and the cage and surface rooms."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..cage.triangulate import triangulate
+
+
+@dataclass(frozen=True, eq=False)
+class MeshData:
+    """A polygon mesh in metres.
+
+    Attributes:
+        points: Vertices [m], shape ``(n, 3)``, float64, in world space.
+        faces: Vertex indices of each polygon, counter-clockwise seen from outside.
+        uvs: Texture coordinates of the vertices, shape ``(n, 2)``, or ``None``.
+        name: Name of the mesh.
+        up_axis: ``"Y"`` or ``"Z"``, the axis of ``points`` that points up.
+    """
+
+    points: np.ndarray
+    faces: tuple[tuple[int, ...], ...]
+    uvs: np.ndarray | None = None
+    name: str = "mesh"
+    up_axis: str = "Z"
+
+    @property
+    def triangles(self) -> np.ndarray:
+        """The faces cut into triangles, shape ``(m, 3)``, int32."""
+        if all(len(face) == 3 for face in self.faces):
+            return np.array(self.faces, dtype=np.int32).reshape(-1, 3)
+        return np.concatenate([self._face_triangles(face) for face in self.faces]).astype(np.int32)
+
+    def _face_triangles(self, face: tuple[int, ...]) -> np.ndarray:
+        """Return the triangles of one polygon, cut in the plane that fits it best."""
+        ids = np.array(face)
+        if len(face) == 3:
+            return ids[None]
+        corners = self.points[ids]
+        normal = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)  # Newell's normal
+        drop = int(np.abs(normal).argmax())
+        flat = np.delete(corners, drop, axis=1) * (1.0, 1.0 if drop != 1 else -1.0)
+        if normal[drop] < 0:
+            flat = flat * (-1.0, 1.0)
+        return ids[triangulate(flat)]
+
+
+def check_mesh(label: str, points: np.ndarray, counts: np.ndarray, indices: np.ndarray) -> None:
+    """Raise when the arrays are no polygon mesh.
+
+    Args:
+        label: What the errors call the mesh.
+        points: Vertices, shape ``(n, 3)``.
+        counts: Vertices of each face, shape ``(F,)``.
+        indices: Vertex indices of all faces, shape ``(sum(counts),)``.
+
+    Raises:
+        ValueError: The mesh is empty, not finite, or a face is too short or points outside the vertices.
+    """
+    if len(points) == 0 or len(counts) == 0:
+        raise ValueError(f"{label} is empty: it has {len(points)} points and {len(counts)} faces")
+    infinite = ~np.isfinite(points).all(axis=1)
+    if infinite.any():
+        raise ValueError(f"{label}: vertex {infinite.argmax()} is not finite: {points[infinite.argmax()]}")
+    if counts.sum() != len(indices):
+        raise ValueError(f"{label}: faceVertexCounts add up to {counts.sum()}, but there are {len(indices)} indices")
+    if (counts < 3).any():
+        face = int((counts < 3).argmax())
+        raise ValueError(f"{label}: face {face} has {counts[face]} vertices; a face needs at least 3")
+    outside = (indices < 0) | (indices >= len(points))
+    if outside.any():
+        corner = int(outside.argmax())
+        face = int(np.searchsorted(np.cumsum(counts), corner, side="right"))
+        raise ValueError(f"{label}: face {face} refers to vertex {indices[corner]}, but there are {len(points)}")

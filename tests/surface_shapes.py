@@ -1,0 +1,107 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""Surfaces for the tests, and what must hold of every surface that was cut."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from newton_cagecut.surface import Surface
+
+_FACES = (
+    "0 11 5 0 5 1 0 1 7 0 7 10 0 10 11 1 5 9 5 11 4 11 10 2 10 7 6 7 1 8 3 9 4 3 4 2 3 2 6 3 6 8 3 8 9 4 9 5 2 4 11 6 "
+    "2 10 8 6 7 9 8 1"
+)
+
+
+def icosphere(level: int) -> tuple[np.ndarray, np.ndarray]:
+    """A unit sphere of 20 * 4**level triangles."""
+    g = 0.5 * (1.0 + np.sqrt(5.0))
+    rows = [[-1, g, 0], [1, g, 0], [-1, -g, 0], [1, -g, 0]]
+    points = np.array([np.roll(row, shift) for shift in range(3) for row in rows])
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    triangles = np.array(_FACES.split(), dtype=int).reshape(-1, 3)
+    for _ in range(level):
+        edges = np.sort(np.concatenate([np.roll(triangles, -k, axis=1)[:, :2] for k in range(3)]), axis=1)
+        unique, inverse = np.unique(edges, axis=0, return_inverse=True)
+        middle = points[unique].mean(axis=1)
+        ab, bc, ca = len(points) + inverse.reshape(3, -1)
+        points = np.concatenate([points, middle / np.linalg.norm(middle, axis=1, keepdims=True)])
+        a, b, c = triangles.T
+        corners = [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
+        triangles = np.concatenate([np.stack(part, axis=1) for part in corners])
+    return points, triangles
+
+
+def sphere(level: int = 3, radius: float = 0.45, center=(0.5, 0.5, 0.5)) -> Surface:
+    """A sphere in the unit box."""
+    points, triangles = icosphere(level)
+    return Surface(radius * points + center, triangles)
+
+
+def bumpy_sphere(level: int = 4) -> Surface:
+    """A star-shaped surface with deep bumps in the unit box, so that sections have several loops."""
+    points, triangles = icosphere(level)
+    x, y, z = points.T
+    radius = 0.33 + 0.12 * np.sin(9.0 * x) * np.cos(8.0 * y + 1.0) * np.cos(7.0 * z)
+    return Surface(radius[:, None] * points + 0.5, triangles, uvs=points[:, :2])
+
+
+def torus(around: int = 60, across: int = 24) -> Surface:
+    """A torus in the unit box."""
+    i, j = np.meshgrid(np.arange(around), np.arange(across), indexing="ij")
+    u, v = 2.0 * np.pi * i / around, 2.0 * np.pi * (j + 0.5 * (i % 2)) / across
+    r = 0.3 + 0.13 * np.cos(v)
+    points = np.stack([r * np.cos(u), r * np.sin(u), 0.13 * np.sin(v)], axis=-1).reshape(-1, 3) + 0.5
+    following = (i + 1) % around
+    odd = i % 2 == 1
+    a, b = i * across + j, i * across + (j + 1) % across
+    c, d = following * across + j, following * across + (j + 1) % across
+    even_rows = np.stack([np.stack([a, c, b], -1), np.stack([b, c, d], -1)])
+    odd_rows = np.stack([np.stack([a, c, d], -1), np.stack([a, d, b], -1)])
+    return Surface(points, np.where(odd[None, ..., None], odd_rows, even_rows).reshape(-1, 3))
+
+
+def outward(surface: Surface, name: str) -> np.ndarray:
+    """A direction that points out of the shape at each triangle's centre, shape (triangle_count, 3)."""
+    center = surface.points[surface.triangles].mean(axis=1) - 0.5
+    if name != "torus":
+        return center
+    ring = center * [1.0, 1.0, 0.0]
+    return center - 0.3 * ring / np.linalg.norm(ring, axis=1, keepdims=True)
+
+
+SURFACES = {"sphere": sphere, "bumpy_sphere": bumpy_sphere, "torus": torus}
+
+
+def check_closed(surface: Surface, volume: float) -> None:
+    """Assert that a surface is a closed manifold without unused points around the volume."""
+    mesh = surface.mesh
+    assert surface.closed
+    assert np.bincount(mesh.face_vertex, minlength=surface.point_count).min() > 0
+    fans = mesh.face_vertex[np.unique(mesh.fan)]
+    assert len(np.unique(fans)) == len(fans)
+    np.testing.assert_allclose(surface.volume, volume, rtol=1e-11)
+
+
+def check_caps(surface: Surface, plane, wall: int) -> None:
+    """Assert that caps lie on the plane, face the right way and have equal areas on both sides."""
+    mesh = surface.mesh
+    on_wall = surface.point_key // 2 == wall
+    assert np.abs(plane.distance(surface.points[on_wall])).max(initial=0.0) < 1e-12
+    cap = surface.triangle_cap == wall
+    assert on_wall[surface.triangles[cap]].all()
+    facing = mesh.face_area_vector[cap] @ plane.normal
+    np.testing.assert_allclose(facing[facing > 0].sum(), -facing[facing < 0].sum(), rtol=1e-9)
+    sides = surface.point_key[surface.triangles[cap]]
+    front = (sides == 2 * wall).any(axis=1)
+    assert facing[front].min(initial=0.0) > -1e-12
+    back = ~front & ~_touches_tips_only(surface, cap, wall)
+    assert facing[back].max(initial=0.0) < 1e-12
+
+
+def _touches_tips_only(surface: Surface, cap: np.ndarray, wall: int) -> np.ndarray:
+    """Cap triangles of which every corner is shared by both sides."""
+    triangles = surface.triangles[cap]
+    minus = np.unique(triangles[(surface.point_key[triangles] == 2 * wall).any(axis=1)])
+    return np.isin(triangles, minus).all(axis=1)
