@@ -26,7 +26,7 @@ class CageEdit:
     cage: Cage
     """The cage after the step."""
     wall: int
-    """Number of the cut's wall in ``cage.walls``."""
+    """Number of the cut's wall in ``cage.walls``, which have it as soon as something is open."""
     plane: BladePlane
     """Plane of the cut."""
     front: float

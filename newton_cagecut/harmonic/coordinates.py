@@ -76,7 +76,7 @@ class HarmonicCoordinates:
         else:
             self.domain = Domain(cage, quads=quads, distance=distance, device=wp.get_device(device))
         points = _checked_points(points)
-        keys = np.full(len(points), -1, np.int32) if point_keys is None else np.asarray(point_keys, np.int32)
+        keys = self._checked_keys(point_keys, len(points))
         self._refuse_outside(points, keys)
         self._walker = Walker(
             self.domain,
@@ -126,7 +126,10 @@ class HarmonicCoordinates:
 
     @property
     def degrees(self) -> np.ndarray:
-        """Degree of the control variates that each point uses, shape (point_count,)."""
+        """Degree of the control variates that each point uses; 0 without, or with an affine correction besides.
+
+        Shape (point_count,).
+        """
         return self._walker.degrees.numpy()[: self.point_count].copy()
 
     @property
@@ -187,16 +190,18 @@ class HarmonicCoordinates:
             point_keys: Key 2 * wall + side for points on a wall, else -1, shape (n,).
 
         Raises:
-            ValueError: A point lies outside the cage, or more points than were reserved. Nothing has changed then.
+            ValueError: A point lies outside the cage, an index is twice there or leaves a gap, a key is of no wall, or
+                there are more points than were reserved. Nothing has changed then.
         """
         walker = self._cache_of("set_points")
-        indices = np.asarray(indices, dtype=np.int64)
         points = _checked_points(points)
-        keys = np.full(len(points), -1, np.int32) if point_keys is None else np.asarray(point_keys, np.int32)
+        indices = self._checked_indices(indices, len(points))
+        keys = self._checked_keys(point_keys, len(points))
         walker.require_points(int(indices.max(initial=-1)) + 1)
         self._refuse_outside(points, keys)
         walker.place(indices, points, keys)
         stats = self._new_stats()
+        stats.rewalked = len(indices) * self.walks
         work = (indices[:, None] * self.walks + np.arange(self.walks)).reshape(-1).astype(np.int32)
         work = wp.array(work, dtype=wp.int32, device=self.domain.device)
         walker.walk(work, stats)
@@ -214,8 +219,13 @@ class HarmonicCoordinates:
 
         Returns:
             Weights, shape (n, cage.vertex_count), float32.
+
+        Raises:
+            ValueError: A key is of no wall.
         """
         options = self._walker.options
+        points = _checked_points(points)
+        self._checked_keys(point_keys, len(points), lowest=0)
         coordinates = HarmonicCoordinates(
             self.domain,
             points,
@@ -246,7 +256,10 @@ class HarmonicCoordinates:
         walker.walk(rewalk, stats)
         walker.land(rewalk, stats, part="rewalk")
         walker.land(on_face, stats, part="on_face")
-        walker.resolve(np.flatnonzero(touched.numpy()), stats)
+        concerned = touched.numpy() != 0
+        if walker.options.correction != "none":
+            concerned |= self.degrees == 0  # An affine correction is spread over all vertices of a component.
+        walker.resolve(np.flatnonzero(concerned), stats)
 
     def _cache_of(self, wanted: str) -> Walker:
         if not self._walker.cuttable:
@@ -255,6 +268,33 @@ class HarmonicCoordinates:
 
     def _new_stats(self) -> UpdateStats:
         return UpdateStats(self.walks * self.point_count)
+
+    def _checked_keys(self, keys: np.ndarray | None, count: int, *, lowest: int = -1) -> np.ndarray:
+        if keys is None:
+            return np.full(count, -1, np.int32)
+        keys = np.asarray(keys)
+        if keys.shape != (count,):
+            raise ValueError(f"point_keys must have the shape ({count},), one key a point, not {keys.shape}")
+        highest = 2 * len(self.domain.cage.walls) - 1
+        bad = np.flatnonzero((keys < lowest) | (keys > highest))
+        if len(bad):
+            raise ValueError(
+                f"point {bad[0]} has the key {keys[bad[0]]}; the keys of the cage's walls are 0 to {highest}"
+                + (", -1 is for points inside" if lowest < 0 else "")
+            )
+        return keys.astype(np.int32)
+
+    def _checked_indices(self, indices: np.ndarray, count: int) -> np.ndarray:
+        indices = np.asarray(indices, dtype=np.int64)
+        if indices.shape != (count,):
+            raise ValueError(f"indices must have the shape ({count},), one index a point, not {indices.shape}")
+        unique = np.unique(indices)
+        if len(unique) < count:
+            raise ValueError("indices: the same point is given twice")
+        added = unique[unique >= self.point_count]
+        if (unique < 0).any() or not np.array_equal(added, self.point_count + np.arange(len(added))):
+            raise ValueError(f"indices: there are {self.point_count} points; new ones must follow without gaps")
+        return indices
 
     def _refuse_outside(self, points: np.ndarray, keys: np.ndarray) -> None:
         inner = np.flatnonzero(keys < 0)

@@ -109,8 +109,8 @@ class Domain:
 
     def _change(self, edit: CageEdit) -> DomainChange:
         polygons = [self.frame.to_unit(polygon) for polygon in edit.swept]
-        normal = np.asarray(edit.cage.walls[edit.wall].normal)
-        pieces = bound_pieces(polygons, [_directions(polygon, normal) for polygon in polygons], self.device)
+        along = [_directions(polygon, edit.plane.normal) for polygon in polygons]
+        pieces = bound_pieces(polygons, along, self.device)
         regrouped = _components_differ(edit.before, edit.cage)
         changed = np.zeros((len(edit.cage.walls), 2), dtype=bool)
         changed.reshape(-1)[np.asarray(edit.changed_keys, dtype=np.int64)] = True

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 CORRECTIONS = ("harmonic", "affine", "none")
 BOUNDS = ("dop18",)
 DISTANCES = ("grid", "all")
@@ -47,7 +49,7 @@ class WalkOptions:
             ("degree", 1, 3),
         ):
             value = getattr(self, name)
-            if int(value) != value or not low <= value <= high:
+            if not isinstance(value, (int, np.integer)) or not low <= value <= high:
                 raise ValueError(f"{name} must be a whole number from {low} to {high}, not {value!r}")
         if not 1.0e-6 <= self.epsilon <= 0.1:
             raise ValueError(f"epsilon must lie between 1e-6 and 0.1 (relative to the cage), not {self.epsilon!r}")

@@ -293,6 +293,7 @@ def make_resolve_kernel(*, correction: str, gradients: bool) -> wp.Kernel:
                 left_over = moments.slope[slot, j] - wp.transpose(flux) * fit
                 moments.slope[slot, j] = wp.vec3d(fit[1], fit[2], fit[3]) + left_over * flux_scale
             if points.key[point] < 0 and is_flat(gram):
+                degree = 0
                 correct_affinely(moments, tables, slot, component, vertex_count, origin)
         else:
             for j in range(vertex_count):
