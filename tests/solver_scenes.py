@@ -1,0 +1,68 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Small scenes for the solver's tests."""
+
+from __future__ import annotations
+
+import newton
+import numpy as np
+
+import newton_cagecut as cagecut
+from cage_shapes import box
+from surface_shapes import sphere
+
+SIZE = 1.0
+"""Side of the box cage [m]."""
+
+
+def ball() -> cagecut.Surface:
+    """A ball inside the box cage."""
+    return sphere(level=2, radius=0.4)
+
+
+def box_cage() -> cagecut.Cage:
+    """A box of side 1 m."""
+    return box()
+
+
+def corners(axis: int, side: float) -> np.ndarray:
+    """Vertices of the box cage on one of its sides."""
+    return np.flatnonzero(box_cage().vertices[:, axis] == side)
+
+
+def make_solver(*, gravity: float = 0.0, builder: newton.ModelBuilder | None = None, **options):
+    """Model, solver and two states of a ball in a box.
+
+    Args:
+        gravity: Gravity along z [m/s^2].
+        builder: A builder with more in it.
+        options: Options of ``add_cage_body``.
+    """
+    builder = builder or newton.ModelBuilder(gravity=(0.0, 0.0, gravity))
+    cagecut.SolverCageCut.register_custom_attributes(builder)
+    defaults = {"walks": 32, "quadrature": 60, "material": cagecut.Material(young=1.0e4, damping=0.02)}
+    cagecut.add_cage_body(builder, box_cage(), ball(), **{**defaults, **options})
+    model = builder.finalize(device="cpu")
+    return model, cagecut.SolverCageCut(model), model.state(), model.state()
+
+
+def run(solver: cagecut.SolverCageCut, states, steps: int, *, dt: float = 1.0 / 60.0, contacts=None):
+    """Step, swapping the states; returns them in their new order."""
+    state_in, state_out = states
+    for _ in range(steps):
+        state_in.clear_forces()
+        solver.step(state_in, state_out, None, contacts, dt)
+        state_in, state_out = state_out, state_in
+    return state_in, state_out
+
+
+def vertex_rows(solver: cagecut.SolverCageCut, state: newton.State, field: str = "particle_q") -> np.ndarray:
+    """Positions or velocities of the vertices in use of the first body."""
+    body = solver.bodies[0]
+    return getattr(state, field)[body.vertices].numpy()[: body.cage.vertex_count].astype(np.float64)
+
+
+def slanted_blade() -> cagecut.Blade:
+    """A blade that crosses the box at an angle."""
+    return cagecut.Blade([0.45, 0.5, 0.5], [0.1, 1.0, 0.15], [0.2, -0.1, -1.0])

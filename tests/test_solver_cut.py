@@ -1,0 +1,246 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Cuts as model edits: what they carry over, what they report, and that failing ones change nothing."""
+
+from __future__ import annotations
+
+import newton
+import numpy as np
+import pytest
+import warp as wp
+
+import newton_cagecut as cagecut
+from solver_scenes import ball, box_cage, corners, make_solver, run, slanted_blade, vertex_rows
+
+
+def everything(solver, states) -> dict[str, np.ndarray]:
+    """All arrays that an edit may touch."""
+    body, model = solver.bodies[0], solver.model
+    arrays = {"rest": body.rest, "fixed": body.fixed, "count": body.vertex_count, "mass": body.system.mass}
+    arrays |= {"volumes": body.system.volumes, "flags": model.particle_flags, "particle_mass": model.particle_mass}
+    arrays |= {
+        f"state_{i}_{name}": getattr(s, name) for i, s in enumerate(states) for name in ("particle_q", "particle_qd")
+    }
+    values = {name: array.numpy().copy() for name, array in arrays.items()}
+    coordinates = body.coordinates
+    values |= {
+        "weights": coordinates.weights_array.numpy().copy(),
+        "gradients": coordinates.gradients,
+        **coordinates.landings,
+    }
+    return {**values, "triangles": np.array(body.surface.triangles), "bounds": coordinates.bounds}
+
+
+def assert_same(before: dict[str, np.ndarray], after: dict[str, np.ndarray]) -> None:
+    """Compare all arrays bit for bit."""
+    for name in before:
+        np.testing.assert_array_equal(after[name], before[name], err_msg=name)
+
+
+def test_cut_keeps_the_deformed_shape():
+    """New cage vertices lie on the deformed cage, and the surface's old points stay nearly where they were."""
+    _, solver, *states = make_solver(gravity=-9.81, fixed=corners(2, 1.0), walks=256)
+    states = run(solver, states, 20)
+    before, _ = solver.surface(states[0])
+    bottom = vertex_rows(solver, states[0])[corners(2, 0.0), 2].mean()
+    assert bottom < -0.05
+    cut = solver.begin_cut(0, slanted_blade())
+    solver.advance_cut(cut, 0.3 * cut.length, states=states)
+    after, _ = solver.surface(states[0])
+    assert np.abs(after[: len(before)] - before).max() < 0.02
+    new = vertex_rows(solver, states[0])[8:]
+    old = vertex_rows(solver, states[0])[:8]
+    assert (new >= old.min(axis=0) - 1e-6).all()
+    assert (new <= old.max(axis=0) + 1e-6).all()
+
+
+def test_both_states_are_carried_over():
+    """Positions and velocities of new vertices are written in every state that is passed."""
+    _, solver, *states = make_solver(gravity=-9.81)
+    states = run(solver, states, 5)
+    cut = solver.begin_cut(0, slanted_blade())
+    report = solver.advance_cut(cut, 0.4, states=states)
+    assert report.vertices_created > 0
+    for state in states:
+        velocities = vertex_rows(solver, state, "particle_qd")
+        np.testing.assert_allclose(velocities[8:], np.broadcast_to(velocities[0], velocities[8:].shape), atol=1.0e-4)
+
+
+def test_rigid_motion_gains_no_energy():
+    """A cut of a body that falls without deforming injects almost no energy."""
+    _, solver, *states = make_solver(gravity=-9.81)
+    states = run(solver, states, 20)
+    cut = solver.begin_cut(0, slanted_blade())
+    report = solver.advance_cut(cut, 0.5 * cut.length, states=states)
+    assert report.energy_before > 100.0
+    assert abs(report.energy_injected) < 1.0e-4 * report.energy_before
+
+
+def test_surface_is_cut_and_stays_closed():
+    """The embedded surface is split and capped at every step, and its points follow the weights."""
+    _, solver, *states = make_solver()
+    cut = solver.begin_cut(0, slanted_blade())
+    volume = solver.bodies[0].surface.volume
+    while not cut.complete:
+        report = solver.advance_cut(cut, 0.2 * cut.length, states=states)
+        surface = solver.bodies[0].surface
+        points, triangles = solver.surface(states[0], 0)
+        assert surface.closed
+        assert surface.volume == pytest.approx(volume, rel=1.0e-9)
+        assert len(points) == surface.point_count
+        assert triangles.max() < len(points)
+        np.testing.assert_allclose(points, surface.points, atol=1.0e-5)
+    assert report.separated
+    assert report.components == 2
+    assert (np.asarray(surface.triangle_cap) >= 0).any()
+
+
+def test_pieces_weigh_what_their_volumes_say():
+    """Quadrature volumes are those of the pieces, and a thin slice gets quadrature points of its own."""
+    _, solver, *states = make_solver(material=cagecut.Material(density=700.0))
+    cut = solver.begin_cut(0, cagecut.Blade([0.5, 0.5, 0.96], [1.0, 0.0, 0.0], [0.0, 1.0, 0.01]))
+    solver.advance_cut(cut, to=10.0, states=states)
+    body = solver.bodies[0]
+    cage = body.cage
+    mass = body.system.vertex_mass.numpy()[: cage.vertex_count]
+    by_piece = np.bincount(cage.vertex_component, mass)
+    np.testing.assert_allclose(by_piece, 700.0 * cage.component_volumes, rtol=0.01)
+
+
+@pytest.mark.parametrize(
+    ("capacity", "culprit"),
+    [
+        ({"vertices": 13}, "vertices"),
+        ({"surface_points": 170}, "surface_points"),
+        ({"surface_triangles": 330}, "surface_triangles"),
+    ],
+)
+def test_cut_that_does_not_fit_changes_nothing(capacity: dict[str, int], culprit: str):
+    """An edit over capacity names what to raise and leaves model, states, cache and cut as they were."""
+    room = {"vertices": 64, "surface_points": 1000, "surface_triangles": 4000, **capacity}
+    _, solver, *states = make_solver(capacity=cagecut.Capacity(**room), gravity=-9.81)
+    states = run(solver, states, 3)
+    cut = solver.begin_cut(0, slanted_blade())
+    solver.advance_cut(cut, to=0.05 * cut.length, states=states)
+    before, depth = everything(solver, states), cut.depth
+    with pytest.raises(ValueError, match=culprit):
+        solver.advance_cut(cut, to=2.0 * cut.length, states=states)
+    assert cut.depth == depth
+    assert_same(before, everything(solver, states))
+    run(solver, states, 2)
+
+
+def test_bad_advances_are_refused():
+    """Going back, NaN, no length, two lengths: refused with nothing changed."""
+    _, solver, *states = make_solver()
+    cut = solver.begin_cut(0, slanted_blade())
+    solver.advance_cut(cut, to=0.3, states=states)
+    before = everything(solver, states)
+    for arguments in ({"to": 0.1}, {"to": float("nan")}, {"by": -0.1}, {}, {"by": 0.1, "to": 0.5}):
+        with pytest.raises(ValueError, match=r"advance|back|nan"):
+            solver.advance_cut(cut, **arguments, states=states)
+    assert_same(before, everything(solver, states))
+
+
+def test_cut_overtaken_by_another_is_refused():
+    """A cut that began before another one advanced no longer fits the cage, and says so."""
+    _, solver, *states = make_solver()
+    first, second = (solver.begin_cut(0, slanted_blade()) for _ in range(2))
+    solver.advance_cut(first, 0.2, states=states)
+    with pytest.raises(ValueError, match="begin a new cut"):
+        solver.advance_cut(second, 0.2, states=states)
+
+
+def test_blade_that_misses_changes_nothing():
+    """A blade beside the body is complete at once and changes nothing."""
+    _, solver, *states = make_solver()
+    before = everything(solver, states)
+    cut = solver.begin_cut(0, cagecut.Blade([5.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]))
+    report = solver.advance_cut(cut, 1.0, states=states)
+    assert report.complete
+    assert report.vertices_created == 0
+    assert_same(before, everything(solver, states))
+
+
+def test_pointers_never_change():
+    """Cuts write in place, so captured graphs, viewers and contact buffers keep their arrays."""
+    model, solver, *states = make_solver(contact_radius=0.01)
+    body = solver.bodies[0]
+    arrays = (body.rest, body.coordinates.weights_array, body.coordinates.gradients_array, model.particle_flags)
+    arrays += (body.system.mass, states[0].particle_q, body.system.volumes)
+    before = [array.ptr for array in arrays]
+    cut = solver.begin_cut(0, slanted_blade())
+    solver.advance_cut(cut, to=10.0, states=states)
+    after = (body.rest, body.coordinates.weights_array, body.coordinates.gradients_array, model.particle_flags)
+    after += (body.system.mass, states[0].particle_q, body.system.volumes)
+    assert [array.ptr for array in after] == before
+    active = model.particle_flags.numpy()[body.surface_particles]
+    assert np.count_nonzero(active) == body.surface.point_count
+
+
+def test_scene_pays_only_for_what_it_uses():
+    """What is left out takes no bytes, and the plan says why."""
+    _, solver, *_ = make_solver(cuttable=False, quadrature=0)
+    plan = {entry.feature: entry for entry in solver.plan()}
+    for feature in ("walk cache", "elasticity", "contact", "nested walks"):
+        assert not plan[feature].on
+        assert plan[feature].byte_count == 0
+        assert plan[feature].reason
+    with pytest.raises(ValueError, match="cuttable=False"):
+        solver.begin_cut(0, slanted_blade())
+
+
+def test_keyframed_cage_moves_the_surface():
+    """Without quadrature the cage's particles are keyframes that the surface follows."""
+    _, solver, state, other = make_solver(quadrature=0)
+    positions = state.particle_q.numpy()
+    positions[:8] = positions[:8] * [1.0, 1.0, 2.0]
+    state.particle_q.assign(positions)
+    state, _ = run(solver, (state, other), 1)
+    points, _ = solver.surface(state)
+    np.testing.assert_allclose(points, ball().points * [1.0, 1.0, 2.0], atol=1.0e-5)
+
+
+def test_bad_bodies_are_refused():
+    """Missing registration, points outside, unknown bodies and bad masks name the culprit."""
+    builder = newton.ModelBuilder()
+    with pytest.raises(ValueError, match="register_custom_attributes"):
+        cagecut.add_cage_body(builder, box_cage(), ball())
+    cagecut.SolverCageCut.register_custom_attributes(builder)
+    with pytest.raises(ValueError, match="outside the cage"):
+        cagecut.add_cage_body(builder, box_cage(), (ball().points + 0.5, ball().triangles))
+    with pytest.raises(ValueError, match="vertex 12"):
+        cagecut.add_cage_body(builder, box_cage(), ball(), fixed=[12])
+    with pytest.raises(TypeError, match="Cage"):
+        cagecut.add_cage_body(builder, "box", ball())
+    with pytest.raises(ValueError, match="no cage bodies"):
+        cagecut.SolverCageCut(builder.finalize(device="cpu"))
+    _, solver, *_ = make_solver(label="heart")
+    assert solver.body("heart") is solver.bodies[0]
+    with pytest.raises(ValueError, match="heart"):
+        solver.begin_cut("liver", slanted_blade())
+
+
+def test_surface_is_logged_with_the_topology_of_now():
+    """The viewer gets the points and triangles of the frame, and caps as a mesh of their own once there are any."""
+    _, solver, *states = make_solver()
+    calls = {}
+
+    class Recorder:
+        def log_mesh(self, name, points, indices, **options):
+            calls[name.rsplit("/", 1)[-1]] = (
+                points.size,
+                wp.clone(indices).numpy(),
+                options.get("hidden", False),
+            )
+
+    solver.log(Recorder(), states[0])
+    assert calls["caps"][2]
+    cut = solver.begin_cut(0, slanted_blade())
+    solver.advance_cut(cut, to=0.7 * cut.length, states=states)
+    solver.log(Recorder(), states[0])
+    surface = solver.bodies[0].surface
+    assert not calls["caps"][2]
+    assert calls["skin"][0] == surface.point_count
+    assert len(calls["skin"][1]) + len(calls["caps"][1]) == 3 * surface.triangle_count
