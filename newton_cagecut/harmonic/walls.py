@@ -59,39 +59,13 @@ def closest_point_on_segment(a: wp.vec3, b: wp.vec3, x: wp.vec3) -> wp.vec3:
 
 
 @wp.func
-def closest_point_on_triangle(triangles: WallTriangles, t: int, x: wp.vec3) -> wp.vec3:
-    """Closest point of a triangle, by the edges that ``x`` is outside of.
-
-    Outside is decided against unit edge normals that were made in float64, so the slivers that cuts leave are as
-    exact as any other triangle (products of barycentric areas are not, in float32).
-    """
-    a = triangles.corner_0[t]
-    b = triangles.corner_1[t]
-    c = triangles.corner_2[t]
-    outside_0 = wp.dot(triangles.inward_0[t], x - a) < 0.0
-    outside_1 = wp.dot(triangles.inward_1[t], x - b) < 0.0
-    outside_2 = wp.dot(triangles.inward_2[t], x - c) < 0.0
-    if not (outside_0 or outside_1 or outside_2):
-        return x - triangles.normal[t] * wp.dot(triangles.normal[t], x - a)
-    best = a
-    best_squared = float(1.0e30)
-    if outside_0:
-        point = closest_point_on_segment(a, b, x)
-        best = point
-        best_squared = wp.length_sq(x - point)
-    if outside_1:
-        point = closest_point_on_segment(b, c, x)
-        squared = wp.length_sq(x - point)
-        if squared < best_squared:
-            best = point
-            best_squared = squared
-    if outside_2:
-        point = closest_point_on_segment(c, a, x)
-        squared = wp.length_sq(x - point)
-        if squared < best_squared:
-            best = point
-            best_squared = squared
-    return best
+def inward_distances(triangles: WallTriangles, t: int, x: wp.vec3) -> wp.vec3:
+    """Signed distances from the planes through a triangle's edges, across its own plane; negative outside."""
+    return wp.vec3(
+        wp.dot(triangles.inward_0[t], x - triangles.corner_0[t]),
+        wp.dot(triangles.inward_1[t], x - triangles.corner_1[t]),
+        wp.dot(triangles.inward_2[t], x - triangles.corner_2[t]),
+    )
 
 
 @wp.func
@@ -101,16 +75,60 @@ def plane_distance(triangles: WallTriangles, t: int, x: wp.vec3) -> float:
 
 
 @wp.func
+def closest_point(triangles: WallTriangles, t: int, x: wp.vec3, off: float, inward: wp.vec3) -> wp.vec3:
+    """Closest point of a triangle, by the edges that x is outside of.
+
+    Outside is decided against unit edge normals that were made in float64, so the slivers that cuts leave are as
+    exact as any other triangle (products of barycentric areas are not, in float32).
+    """
+    if inward[0] >= 0.0 and inward[1] >= 0.0 and inward[2] >= 0.0:
+        return x - triangles.normal[t] * off
+    a = triangles.corner_0[t]
+    b = triangles.corner_1[t]
+    c = triangles.corner_2[t]
+    best = a
+    best_squared = float(1.0e30)
+    if inward[0] < 0.0:
+        point = closest_point_on_segment(a, b, x)
+        best = point
+        best_squared = wp.length_sq(x - point)
+    if inward[1] < 0.0:
+        point = closest_point_on_segment(b, c, x)
+        squared = wp.length_sq(x - point)
+        if squared < best_squared:
+            best = point
+            best_squared = squared
+    if inward[2] < 0.0:
+        point = closest_point_on_segment(c, a, x)
+        squared = wp.length_sq(x - point)
+        if squared < best_squared:
+            best = point
+            best_squared = squared
+    return best
+
+
+@wp.func
+def closest_point_on_triangle(triangles: WallTriangles, t: int, x: wp.vec3) -> wp.vec3:
+    """Closest point of a triangle."""
+    return closest_point(triangles, t, x, plane_distance(triangles, t, x), inward_distances(triangles, t, x))
+
+
+@wp.func
 def nearer(triangles: WallTriangles, t: int, x: wp.vec3, best: Nearest) -> Nearest:
     """Keep the nearer of ``best`` and triangle ``t``; on a tie the lower index.
 
-    The plane's distance rejects most triangles first. Its margin is wider than the rounding of either distance, so
-    the result does not depend on the order in which triangles are offered.
+    The distance from the plane, then the one across the edges, reject most triangles first. The margin is wider than
+    the rounding of either, so the result does not depend on the order in which triangles are offered.
     """
+    reach = best.distance_squared * _TIE + _TINY
     off = plane_distance(triangles, t, x)
-    if off * off > best.distance_squared * _TIE + _TINY:
+    if off * off > reach:
         return best
-    point = closest_point_on_triangle(triangles, t, x)
+    inward = inward_distances(triangles, t, x)
+    outside = wp.min(wp.min(inward), 0.0)
+    if off * off + outside * outside > reach:
+        return best
+    point = closest_point(triangles, t, x, off, inward)
     distance_squared = wp.length_sq(x - point)
     if distance_squared < best.distance_squared or (distance_squared == best.distance_squared and t < best.triangle):
         best.distance_squared = distance_squared

@@ -45,6 +45,8 @@ class CageBody:
         self._quadrature = self._sample()
         self.quadrature_count = len(self._quadrature.points) if self._quadrature else 0
         self.coordinates = self._bake(progress)
+        # Counts live on the device and launches cover the capacity, so that a captured graph stays valid across cuts.
+        self.point_count = wp.zeros(1, dtype=wp.int32, device=self.device)
         self.vertex_count = wp.array([definition.cage.vertex_count], dtype=wp.int32, device=self.device)
         self.rest = wp.clone(model.particle_q[self.vertices])
         self.fixed = wp.array(self._padded(definition.fixed), dtype=wp.int32, device=self.device)
@@ -114,6 +116,7 @@ class CageBody:
     def set_surface(self, surface: Surface) -> None:
         """Take over a surface whose points are in the coordinates already."""
         self.surface = surface
+        self.point_count.fill_(surface.point_count)
         _write_rows(self._triangles, 0, np.asarray(surface.triangles, dtype=np.int32))
         if self.has_contact:
             start = self.surface_particles.start
@@ -144,8 +147,15 @@ class CageBody:
         return self.system.energy(state.particle_q[self.vertices], state.particle_qd[self.vertices])
 
     def _embed(self, vertices: wp.array, points: wp.array) -> None:
-        inputs = [self.coordinates.weights_array, self.surface_row, self.vertex_count, vertices, points]
-        wp.launch(embed, dim=len(self.surface.points), inputs=inputs, device=self.device)
+        inputs = [
+            self.coordinates.weights_array,
+            self.surface_row,
+            self.point_count,
+            self.vertex_count,
+            vertices,
+            points,
+        ]
+        wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
 
     def _sample(self) -> Quadrature | None:
         definition = self.definition

@@ -64,7 +64,7 @@ class ContactTerm:
                 contacts.soft_contact_body_vel,
                 contacts.soft_contact_normal,
                 body.surface_particles.start,
-                len(body.surface.points),
+                body.point_count,
                 state.particle_q,
                 state.particle_qd,
                 model.particle_radius,
@@ -84,8 +84,8 @@ class ContactTerm:
         )
         wp.launch(
             kernels.list_touching,
-            dim=len(body.surface.points),
-            inputs=[self._stiffness, self._touching, self._touching_count],
+            dim=body.capacity.surface_points,
+            inputs=[body.point_count, self._stiffness, self._touching, self._touching_count],
             device=body.device,
         )
 
@@ -105,7 +105,9 @@ class ContactTerm:
     def _launch_rows(self, kernel: wp.Kernel, inputs: list) -> None:
         body = self._body
         lists = [self._touching, self._touching_count, body.coordinates.weights_array, body.surface_row]
-        wp.launch(kernel, dim=len(body.surface.points), inputs=[*lists, body.vertex_count, *inputs], device=body.device)
+        wp.launch(
+            kernel, dim=body.capacity.surface_points, inputs=[*lists, body.vertex_count, *inputs], device=body.device
+        )
 
     def _launch_vertices(self, kernel: wp.Kernel, inputs: list) -> None:
         body = self._body

@@ -22,7 +22,7 @@ def collect_contacts(
     contact_body_vel: wp.array[wp.vec3],
     contact_normal: wp.array[wp.vec3],
     first_particle: int,
-    point_count: int,
+    point_count: wp.array[wp.int32],
     particle_q: wp.array[wp.vec3],
     particle_qd: wp.array[wp.vec3],
     particle_radius: wp.array[float],
@@ -44,7 +44,7 @@ def collect_contacts(
         return
     particle = contact_particle[c]
     row = particle - first_particle
-    if row < 0 or row >= point_count:
+    if row < 0 or row >= point_count[0]:
         return
     shape = contact_shape[c]
     rigid = shape_body[shape]
@@ -73,10 +73,15 @@ def collect_contacts(
 
 
 @wp.kernel(enable_backward=False)
-def list_touching(stiffness: wp.array[wp.mat33], touching: wp.array[wp.int32], touching_count: wp.array[wp.int32]):
+def list_touching(
+    point_count: wp.array[wp.int32],
+    stiffness: wp.array[wp.mat33],
+    touching: wp.array[wp.int32],
+    touching_count: wp.array[wp.int32],
+):
     """List the surface points that touch something."""
     i = wp.tid()
-    if wp.trace(stiffness[i]) > 0.0:
+    if i < point_count[0] and wp.trace(stiffness[i]) > 0.0:
         touching[wp.atomic_add(touching_count, 0, 1)] = i
 
 

@@ -14,12 +14,15 @@ wp.set_module_options({"enable_backward": False})
 def embed(
     weights: wp.array2d[float],
     first_row: int,
+    point_count: wp.array[wp.int32],
     vertex_count: wp.array[wp.int32],
     vertices: wp.array[wp.vec3],
     points: wp.array[wp.vec3],
 ):
     """Sum a vertex field with the weights of each surface point."""
     i = wp.tid()
+    if i >= point_count[0]:
+        return
     total = wp.vec3()
     for j in range(vertex_count[0]):
         total += weights[first_row + i, j] * vertices[j]
