@@ -75,6 +75,7 @@ class HarmonicCoordinates:
             self.domain = cage
         else:
             self.domain = Domain(cage, quads=quads, distance=distance, device=wp.get_device(device))
+        self._cage = self.domain.cage
         points = _checked_points(points)
         keys = self._checked_keys(point_keys, len(points))
         self._refuse_outside(points, keys)
@@ -91,8 +92,8 @@ class HarmonicCoordinates:
 
     @property
     def cage(self) -> Cage:
-        """The cage as it is now."""
-        return self.domain.cage
+        """The cage that the weights are for: that of the last update or recompute."""
+        return self._cage
 
     @property
     def point_count(self) -> int:
@@ -163,6 +164,10 @@ class HarmonicCoordinates:
                 vertices than were reserved. Nothing has changed then.
         """
         walker = self._cache_of("update")
+        if edit.before is not self._cage:
+            raise ValueError(
+                "update: the edit starts from another cage than the coordinates hold; pass every edit, in order"
+            )
         walker.require_vertices(edit.cage.vertex_count)
         stats = self._new_stats()
         with stats.time("walls", self.domain.device):
@@ -170,7 +175,8 @@ class HarmonicCoordinates:
             walker.grow_vertices(edit.cage.vertex_count)
             if change.regrouped:
                 walker.group_points()
-        if edit.cage is edit.before:
+        self._cage = edit.cage
+        if edit.is_empty:
             return stats
         self._run_concerned(change, stats)
         return stats
@@ -178,6 +184,10 @@ class HarmonicCoordinates:
     def recompute(self) -> UpdateStats:
         """Walk every walk again on the walls as they are: the paper's naive baseline."""
         stats = self._new_stats()
+        self._cage = self.domain.cage
+        self._walker.require_vertices(self._cage.vertex_count)
+        self._walker.grow_vertices(self._cage.vertex_count)
+        self._walker.group_points()
         self._walker.run_all(stats)
         return stats
 

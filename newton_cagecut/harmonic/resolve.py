@@ -34,6 +34,8 @@ Gram = wp.types.matrix(shape=(FEATURE_COUNT, FEATURE_COUNT), dtype=wp.float64)
 Flux = wp.types.matrix(shape=(FEATURE_COUNT, 3), dtype=wp.float64)
 
 _PIVOT = wp.constant(wp.float64(1.0e-9))
+_MOST_INFLATION = wp.constant(wp.float64(4.0))
+"""Variance of a fit at p, relative to that of a mean, above which the landings do not determine it."""
 _ZERO = wp.constant(wp.float64(0.0))
 _ONE = wp.constant(wp.float64(1.0))
 
@@ -139,7 +141,9 @@ def choose_degree(
     """Forward-substitute the boundary functions and choose the degree of least estimated squared error.
 
     With the factor of the highest degree, the residual of every lower one is a partial sum. The estimate is residual
-    variance times the estimator's inflation (the sum of its squared walk weights), both for the features used.
+    variance times the estimator's inflation (the sum of its squared walk weights), both for the features used. The
+    degree is 0 where not even a linear fit is determined: next to a wall, when a few landings off it, and hardly off
+    it, would be extrapolated to p.
     """
     count = feature_count_of_degree(max_degree)
     explained = Features()
@@ -152,7 +156,7 @@ def choose_degree(
     unit = forward_substitute(factor, unit, count)
     residual = squares
     inflation = _ZERO
-    best_degree = int(1)
+    best_degree = int(0)
     best_error = wp.float64(1.0e300)
     for degree in range(max_degree + 1):
         last = feature_count_of_degree(degree)
@@ -161,7 +165,8 @@ def choose_degree(
             inflation += unit[i] * unit[i] * factor[i, i]
         freedom = walks - last
         error = wp.max(residual, _ZERO) * inflation / wp.float64(wp.max(freedom, 1))
-        if degree == 1 or (degree > 1 and freedom > 2 * last and error < best_error):
+        determined = inflation * wp.float64(walks) <= _MOST_INFLATION
+        if determined and (degree == 1 or (degree > 1 and freedom > 2 * last and error < best_error)):
             best_error = error
             best_degree = degree
     return best_degree
@@ -284,6 +289,8 @@ def make_resolve_kernel(*, correction: str, gradients: bool) -> wp.Kernel:
         if wp.static(correction == "harmonic"):
             gram = factor_gram(gram, feature_count_of_degree(max_degree))
             degree = choose_degree(gram, moments, slot, vertex_count, walks, max_degree, squares)
+            if points.key[point] >= 0:
+                degree = wp.max(degree, 1)
             count = feature_count_of_degree(degree)
             for j in range(vertex_count):
                 fit = back_substitute(gram, moments.value[slot, j], count)
@@ -292,7 +299,7 @@ def make_resolve_kernel(*, correction: str, gradients: bool) -> wp.Kernel:
                 moments.value[slot, j] = fit
                 left_over = moments.slope[slot, j] - wp.transpose(flux) * fit
                 moments.slope[slot, j] = wp.vec3d(fit[1], fit[2], fit[3]) + left_over * flux_scale
-            if points.key[point] < 0 and is_flat(gram):
+            if points.key[point] < 0 and (degree == 0 or is_flat(gram)):
                 degree = 0
                 correct_affinely(moments, tables, slot, component, vertex_count, origin)
         else:

@@ -57,15 +57,11 @@ class Walker:
         self.degrees = wp.zeros(point_capacity, dtype=wp.int32, device=device)
         self._rest = np.zeros((point_capacity, 3))
         self.gradient_count = int(gradient_mask.sum())
-        walk_capacity = (
-            point_capacity * options.walks if cuttable else min(point_capacity * options.walks, _BATCH_WALKS)
-        )
-        if not cuttable:
-            walk_capacity = max(walk_capacity // options.walks, 1) * options.walks
         if point_capacity * options.walks >= 1 << 31:
             raise ValueError(f"{point_capacity} points x {options.walks} walks are 2^31 or more; lower either")
-        self.landings = _empty_landings(walk_capacity, device)
-        self.bounds = wp.empty(walk_capacity if cuttable else 1, dtype=QuantizedExtents, device=device)
+        kept = point_capacity * options.walks if cuttable else 0
+        self.landings = _empty_landings(kept, device)
+        self.bounds = wp.empty(kept, dtype=QuantizedExtents, device=device)
         self._make_weights(vertex_capacity or domain.cage.vertex_count)
 
     def require_vertices(self, vertex_count: int) -> None:
@@ -113,7 +109,9 @@ class Walker:
         """Walk, land and resolve every point, in batches where walks are not kept."""
         walks = self.options.walks
         stats.walk_count = stats.rewalked = self.point_count * walks
-        batch = self.point_count if self.cuttable else max(1, self.landings.key.size // walks)
+        batch = self.point_count if self.cuttable else min(self.point_count, max(1, _BATCH_WALKS // walks))
+        if not self.cuttable:
+            self.landings = _empty_landings(batch * walks, self.domain.device)
         no_work = wp.zeros(0, dtype=wp.int32, device=self.domain.device)
         for first in range(0, self.point_count, max(batch, 1)):
             count = min(batch, self.point_count - first)
@@ -124,6 +122,8 @@ class Walker:
             self.walk(no_work, stats, first_point=first, count=count * walks, progress=progress and report)
             self.land(no_work, stats, first_point=first, count=count * walks, part="rewalk")
             self.resolve(np.arange(first, first + count), stats, first_point=first)
+        if not self.cuttable:
+            self.landings = _empty_landings(0, self.domain.device)
 
     def walk(
         self,
@@ -180,6 +180,8 @@ class Walker:
             stats.resolved_points += len(points)
             if self.cuttable:
                 stats.capped = count_capped(self.landings.key[: self.point_count * options.walks], int(CAPPED))
+            else:
+                stats.capped += count_capped(self.landings.key[: len(points) * options.walks], int(CAPPED))
 
     def memory(self) -> dict[str, int]:
         """Bytes of each part on the device."""
@@ -187,8 +189,8 @@ class Walker:
         return {
             "weights": _bytes(self.weights),
             "gradients": _bytes(self.gradients),
-            "landings": sum(map(_bytes, landings)) if self.cuttable else 0,
-            "bounds": _bytes(self.bounds) if self.cuttable else 0,
+            "landings": sum(map(_bytes, landings)),
+            "bounds": _bytes(self.bounds),
             "points": byte_count(self.points),
             "walls": self.domain.walls.byte_count,
             "grid": self.domain.grid.byte_count,

@@ -1,0 +1,102 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""Points, blades and exact coordinates for the tests of harmonic coordinates, and what must hold of all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import warp as wp
+
+from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
+from newton_cagecut.harmonic import HarmonicCoordinates
+
+wp.config.quiet = True
+
+DEVICES = [str(device) for device in wp.get_devices()]
+
+
+def interior_points(cage: Cage, count: int, rng: np.random.Generator) -> np.ndarray:
+    """Uniform points inside a cage, shape (count, 3)."""
+    low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
+    points = np.zeros((0, 3))
+    while len(points) < count:
+        drawn = rng.uniform(low, high, (4 * count, 3))
+        points = np.concatenate([points, drawn[cage.contains(drawn)]])
+    return points[:count]
+
+
+def points_near_faces(cage: Cage, distance: float, rng: np.random.Generator) -> np.ndarray:
+    """A point in front of every triangle of a cage, at a distance [m] inside, shape (triangle_count, 3)."""
+    corners = cage.vertices[cage.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    share = rng.dirichlet((3.0, 3.0, 3.0), len(corners))
+    return np.einsum("ti,tij->tj", share, corners) - distance * normals
+
+
+def random_blade(rng: np.random.Generator, cage: Cage) -> Blade:
+    """A blade of any direction whose plane passes near the middle of a cage."""
+    origin = cage.vertices.mean(axis=0) + 0.1 * cage.diameter * rng.uniform(-1.0, 1.0, 3)
+    return Blade(origin, rng.normal(size=3), rng.normal(size=3))
+
+
+def crossing_blade(rng: np.random.Generator, edits: list[CageEdit]) -> Blade:
+    """A blade whose plane passes through what earlier edits swept."""
+    swept = np.concatenate([edit.swept_triangles for edit in edits])
+    return Blade(swept[len(swept) // 2].mean(axis=0), rng.normal(size=3), rng.normal(size=3))
+
+
+def middle_cut(cage: Cage) -> Cut:
+    """A cut across x, from above, next to the middle of a cage."""
+    low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
+    return Cut(cage, Blade(low + (high - low) * [0.47, 0.5, 0.5], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]))
+
+
+def snapshot(coordinates: HarmonicCoordinates) -> dict[str, np.ndarray]:
+    """All that an update brings up to date."""
+    return {
+        "weights": coordinates.weights,
+        "gradients": coordinates.gradients,
+        "degrees": coordinates.degrees,
+        "bounds": coordinates.bounds,
+        **coordinates.landings,
+    }
+
+
+def assert_identical(first: dict[str, np.ndarray], second: dict[str, np.ndarray]) -> None:
+    """Assert equality bit for bit."""
+    assert first.keys() == second.keys()
+    for name, values in first.items():
+        assert np.array_equal(values, second[name]), f"{name} differs"
+
+
+def assert_reproduces(coordinates: HarmonicCoordinates, points: np.ndarray, *, gradients: bool = True) -> None:
+    """Assert that weights sum to 1, give the rest position and have gradients that leave rigid motions free.
+
+    To 1e-5 of the size and 1e-4, where float32 resolves that: next to a cut gradients can be so large that it does not.
+    """
+    cage, weights = coordinates.cage, coordinates.weights
+    np.testing.assert_allclose(weights.sum(axis=1, dtype=np.float64), 1.0, atol=1e-5)
+    np.testing.assert_allclose(weights @ cage.vertices, points, atol=1e-5 * cage.diameter)
+    if gradients:
+        slopes = coordinates.gradients.astype(np.float64)
+        allowed = np.maximum(1e-4, 2.0**-21 * cage.diameter * np.abs(slopes).max(axis=(1, 2)))
+        assert (np.abs(slopes.sum(axis=1)).max(axis=1) * cage.diameter <= allowed).all()
+        identity = np.einsum("vi,pvj->pij", cage.vertices - points.mean(axis=0), slopes)
+        assert (np.abs(identity - np.eye(3)).max(axis=(1, 2)) <= allowed).all()
+
+
+def trilinear(cage: Cage, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Exact harmonic coordinates of a box and their gradients [1/m], shapes (n, 8) and (n, 8, 3)."""
+    low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
+    sign = np.where(cage.vertices > 0.5 * (low + high), 1.0, -1.0)
+    factor = 0.5 + sign * ((points - 0.5 * (low + high)) / (high - low))[:, None]
+    slope = sign / (high - low)
+    gradient = np.stack([slope[:, k] * np.delete(factor, k, axis=2).prod(axis=2) for k in range(3)], axis=2)
+    return factor.prod(axis=2), gradient
+
+
+def side_vertices(cage: Cage, wall: int, side: int) -> np.ndarray:
+    """Vertices of the faces on one side of a wall, ascending."""
+    faces = np.flatnonzero(cage.face_key == 2 * wall + side)
+    return np.unique(np.concatenate([cage.faces[face] for face in faces]))

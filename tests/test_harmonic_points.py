@@ -1,0 +1,189 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""Query points: which are refused and how that is said, and how points are added and moved."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from cage_shapes import box, star_prism
+from harmonic_shapes import assert_identical, assert_reproduces, interior_points, middle_cut, snapshot
+from newton_cagecut.cage import Cage
+from newton_cagecut.harmonic import HarmonicCoordinates
+
+WALKS = 64
+INSIDE = np.array([[0.3, 0.4, 0.5], [0.6, 0.2, 0.7]])
+
+
+def bake(points: np.ndarray, cage: Cage | None = None, **options) -> HarmonicCoordinates:
+    """Coordinates with gradients, in a unit box by default."""
+    return HarmonicCoordinates(cage or box(), points, WALKS, **{"gradients": True, **options})
+
+
+def per_point(coordinates: HarmonicCoordinates, count: int) -> dict[str, np.ndarray]:
+    """All that a snapshot holds, a row a point."""
+    return {name: values.reshape(count, -1) for name, values in snapshot(coordinates).items()}
+
+
+def test_points_outside_are_counted():
+    """Points outside are refused with their count, the farthest one and its distance."""
+    points = np.concatenate([INSIDE, [[1.25, 0.5, 0.5], [0.5, -0.5, 0.5]]])
+    with pytest.raises(ValueError, match=r"2 of 4 points lie outside.*point 3.*0\.5 m"):
+        bake(points)
+    between_spikes = 0.9 * np.array([[np.cos(0.1 + np.pi / 5), np.sin(0.1 + np.pi / 5), 0.5]])
+    with pytest.raises(ValueError, match="1 of 1 points lie outside"):
+        bake(between_spikes, star_prism())
+
+
+def test_points_on_the_boundary_are_taken():
+    """Points exactly on a face or in a corner are no points outside, and have the weights of the boundary."""
+    points = np.array([[0.0, 0.5, 0.5], [0.25, 1.0, 0.5], [1.0, 1.0, 1.0], [0.0, 0.0, 0.5]])
+    coordinates = bake(points)
+    assert_reproduces(coordinates, points, gradients=False)
+    corner = np.flatnonzero((coordinates.cage.vertices == 1.0).all(axis=1))
+    np.testing.assert_allclose(coordinates.weights[2, corner], 1.0, atol=1e-5)
+
+
+def test_bad_points():
+    """A point that is not finite or not three numbers is named."""
+    with pytest.raises(ValueError, match="point 1 is not finite"):
+        bake(np.array([[0.5, 0.5, 0.5], [0.5, np.nan, 0.5]]))
+    with pytest.raises(ValueError, match=r"shape \(n, 3\).*\(2, 2\)"):
+        bake(np.zeros((2, 2)))
+    with pytest.raises(ValueError, match=r"\(n, 3\).*\(3,\)"):
+        bake(np.zeros(3))
+
+
+def test_no_points():
+    """No points are no error: the weights are empty, and updates have nothing to do."""
+    cage = box()
+    coordinates = bake(np.zeros((0, 3)), cage)
+    assert coordinates.weights.shape == (0, 8)
+    edit = middle_cut(cage).advance(to=0.5)
+    assert coordinates.update(edit).walk_count == 0
+    assert coordinates.weights.shape == (0, edit.cage.vertex_count)
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "text"),
+    [
+        ("walks", 0, "from 1 to 16777216"),
+        ("walks", 1.5, "from 1 to 16777216"),
+        ("walks", float("inf"), "from 1 to 16777216"),
+        ("walks", "many", "from 1 to 16777216"),
+        ("seed", -1, "from 0 to 4294967295"),
+        ("max_steps", 0, "from 1 to 65536"),
+        ("degree", 4, "from 1 to 3"),
+        ("epsilon", 0.0, "between 1e-6 and 0.1"),
+        ("epsilon", float("nan"), "between 1e-6 and 0.1"),
+        ("correction", "best", "harmonic, affine, none"),
+        ("bounds", "box", "dop18"),
+        ("distance", "near", "grid, all"),
+        ("quads", "bilinear", "mean_value, harmonic"),
+    ],
+)
+def test_bad_options_are_named(option, value, text):
+    """An option out of its range is refused with its name and its range."""
+    with pytest.raises(ValueError, match=f"{option} must .*{text}"):
+        HarmonicCoordinates(box(), INSIDE, **{option: value})
+
+
+@pytest.mark.parametrize("depth", [None, 0.6, 1.1])
+def test_set_points_touches_no_other(depth):
+    """Added and moved points equal those of a fresh bake with the same edits; all others keep their bits."""
+    cage = box()
+    old = interior_points(cage, 20, np.random.default_rng(1))
+    fresh = np.concatenate([old, interior_points(cage, 5, np.random.default_rng(2))])
+    fresh[[3, 11]] = interior_points(cage, 2, np.random.default_rng(3))
+    moving = bake(old, cage, point_capacity=25)
+    baked = bake(fresh, cage)
+    if depth is not None:
+        edit = middle_cut(cage).advance(to=depth)
+        moving.update(edit)
+        baked.update(edit)
+    before = per_point(moving, 20)
+    changed = np.array([3, 11, *range(20, 25)])
+    stats = moving.set_points(changed, fresh[changed])
+    assert moving.point_count == 25
+    assert stats.walk_count == 25 * WALKS
+    assert stats.resolved_points == 7
+    assert stats.rewalked == 7 * WALKS
+    after = {name: values.reshape(25, -1) for name, values in snapshot(moving).items() if name != "gradients"}
+    kept = np.setdiff1d(np.arange(20), changed)
+    assert_identical({name: before[name][kept] for name in after}, {name: after[name][kept] for name in after})
+    np.testing.assert_array_equal(moving.gradients, baked.gradients[:20])
+    assert_identical(after, {name: per_point(baked, 25)[name] for name in after})
+
+
+def test_set_points_then_update():
+    """Points that were set follow later cuts like any other."""
+    cage = box()
+    points = interior_points(cage, 20, np.random.default_rng(4))
+    coordinates = bake(points[:12], cage, point_capacity=20, gradients=False)
+    cut = middle_cut(cage)
+    coordinates.update(cut.advance(to=0.4))
+    coordinates.set_points(np.arange(12, 20), points[12:])
+    for depth in (0.8, 1.1):
+        coordinates.update(cut.advance(to=depth))
+        updated = snapshot(coordinates)
+        coordinates.recompute()
+        assert_identical(updated, snapshot(coordinates))
+    assert_reproduces(coordinates, points, gradients=False)
+
+
+def test_points_on_a_side_of_the_cut():
+    """Points set on the two sides of a cut have the weights of their side, and keep them exact as the cut goes on."""
+    cage = box()
+    coordinates = bake(INSIDE, cage, point_capacity=4)
+    cut = middle_cut(cage)
+    coordinates.update(cut.advance(to=0.5))
+    place = np.array([[0.47, 0.4, 0.9], [0.47, 0.4, 0.9]])
+    coordinates.set_points([2, 3], place, [2 * cut.wall, 2 * cut.wall + 1])
+    for depth in (0.5, 0.8, 1.1):
+        coordinates.update(cut.advance(to=depth))
+        updated = snapshot(coordinates)
+        coordinates.recompute()
+        assert_identical(updated, snapshot(coordinates))
+        np.testing.assert_allclose(coordinates.weights[2:] @ coordinates.cage.vertices, place, atol=1e-5)
+    component = coordinates.cage.vertex_component
+    used = [set(component[np.flatnonzero(row)].tolist()) for row in coordinates.weights[2:]]
+    assert len(used[0]) == len(used[1]) == 1
+    assert used[0] != used[1]
+
+
+def test_set_points_refuses():
+    """Points outside, beyond the capacity, with gaps, twice or of the wrong count are refused; nothing has changed."""
+    coordinates = bake(INSIDE, point_capacity=4)
+    before = snapshot(coordinates)
+    good = np.array([[0.5, 0.5, 0.5]])
+    for indices, points, text in (
+        ([0], good + 2.0, "outside"),
+        ([0], good * np.nan, "not finite"),
+        ([4], good, "gaps"),
+        ([3], good, "gaps"),
+        ([-1], good, "gaps"),
+        ([0, 0], np.repeat(good, 2, axis=0), "twice"),
+        ([0, 1], good, "shape"),
+        ([2, 3, 4], np.repeat(good, 3, axis=0), "point_capacity"),
+    ):
+        with pytest.raises(ValueError, match=text):
+            coordinates.set_points(np.array(indices), points)
+    assert coordinates.point_count == 2
+    assert_identical(before, snapshot(coordinates))
+    with pytest.raises(ValueError, match="keys of the cage's walls are 0 to 11"):
+        coordinates.set_points([0], good, [12])
+
+
+def test_bake_in_a_cut_cage():
+    """Coordinates made in a cage with a cut that is still open follow it from there."""
+    rng = np.random.default_rng(5)
+    cut = middle_cut(box())
+    cut.advance(to=0.5)
+    points = interior_points(cut.base, 30, rng)
+    coordinates = bake(points, cut.cage)
+    assert_reproduces(coordinates, points)
+    for depth in (0.8, 1.1):
+        coordinates.update(cut.advance(to=depth))
+        assert_reproduces(coordinates, points)
+    assert coordinates.cage.component_count == 2
