@@ -3,9 +3,9 @@
 
 """Cages with harmonic coordinates that can be cut while they move, as a solver for Newton.
 
-The rooms, from the bottom up: ``cage``, ``harmonic``, ``surface``, ``elastic``, ``usd``, ``solver``. The names here are the public ones.
-"Fast Cutting of Cage Based Deformation with Walk on Spheres" is the method; bit-identity of updates and control
-variates go past it.
+The rooms, from the bottom up: ``cage``, ``harmonic``, ``surface``, ``elastic``, ``usd``, ``solver``. The names here are
+the public ones. The method is "Fast Cutting of Cage Based Deformation with Walk on Spheres"; bit-identical updates
+and harmonic control variates go past it.
 """
 
 from __future__ import annotations

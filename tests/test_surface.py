@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from cage_shapes import box, u_shape
-from newton_cagecut.surface import Surface, check_embedded
-from newton_cagecut.surface.embedding import boundary_distances
+from newton_cagecut.cage import boundary_distances, check_inside
+from newton_cagecut.surface import Surface
 from surface_shapes import SURFACES, check_closed, icosphere, sphere
 
 
@@ -68,11 +68,11 @@ def test_bad_surfaces_are_refused(points, triangles, options, error, match):
 def test_embedding():
     """Points inside or on a cage pass; points outside are counted and the farthest is named with its distance."""
     cage = box()
-    check_embedded(cage, sphere().points)
-    check_embedded(cage, np.array([[0.0, 0.0, 0.0], [1.0, 0.5, 0.5], [0.5, 0.5, 0.5]]))
+    check_inside(cage, sphere().points)
+    check_inside(cage, np.array([[0.0, 0.0, 0.0], [1.0, 0.5, 0.5], [0.5, 0.5, 0.5]]))
     points = np.array([[0.5, 0.5, 0.5], [1.25, 0.5, 0.5], [1.3, 1.4, 0.5]])
-    with pytest.raises(ValueError, match=r"2 of 3 points lie outside the cage, point 2 the farthest, by 0\.5;"):
-        check_embedded(cage, points)
+    with pytest.raises(ValueError, match=r"2 of 3 points lie outside the cage, the farthest \(point 2\) by 0\.5 m"):
+        check_inside(cage, points)
 
 
 def test_boundary_distances_of_a_concave_cage():

@@ -6,8 +6,20 @@ from .blade import Blade, BladePlane
 from .cage import Cage
 from .cut import Cut
 from .edit import CageEdit
+from .inside import boundary_distances, check_inside
 from .polygon_mesh import PolygonMesh
 from .triangulate import triangulate
 from .wall import Wall
 
-__all__ = ["Blade", "BladePlane", "Cage", "CageEdit", "Cut", "PolygonMesh", "Wall", "triangulate"]
+__all__ = [
+    "Blade",
+    "BladePlane",
+    "Cage",
+    "CageEdit",
+    "Cut",
+    "PolygonMesh",
+    "Wall",
+    "boundary_distances",
+    "check_inside",
+    "triangulate",
+]

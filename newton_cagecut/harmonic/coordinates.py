@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 import warp as wp
 
-from ..cage import Cage, CageEdit
+from ..cage import Cage, CageEdit, check_inside
 from .compact import ON_FACE, REWALK, gather, mark_walks
 from .domain import Domain, DomainChange
 from .landing import LANDING_DTYPES
@@ -78,7 +78,7 @@ class HarmonicCoordinates:
         self._cage = self.domain.cage
         points = _checked_points(points)
         keys = self._checked_keys(point_keys, len(points))
-        self._refuse_outside(points, keys)
+        check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
         self._walker = Walker(
             self.domain,
             options,
@@ -208,7 +208,7 @@ class HarmonicCoordinates:
         indices = self._checked_indices(indices, len(points))
         keys = self._checked_keys(point_keys, len(points))
         walker.require_points(int(indices.max(initial=-1)) + 1)
-        self._refuse_outside(points, keys)
+        check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
         walker.place(indices, points, keys)
         stats = self._new_stats()
         stats.rewalked = len(indices) * self.walks
@@ -305,20 +305,6 @@ class HarmonicCoordinates:
         if (unique < 0).any() or not np.array_equal(added, self.point_count + np.arange(len(added))):
             raise ValueError(f"indices: there are {self.point_count} points; new ones must follow without gaps")
         return indices
-
-    def _refuse_outside(self, points: np.ndarray, keys: np.ndarray) -> None:
-        inner = np.flatnonzero(keys < 0)
-        outside = inner[~np.asarray(self.domain.cage.contains(points[inner]))] if len(inner) else inner
-        if not len(outside):
-            return
-        distance = self.domain.distance_to_walls(points[outside])
-        beyond = distance > 1.0e-6 * self.domain.frame.half_side
-        if beyond.any():
-            worst = outside[np.argmax(distance)]
-            raise ValueError(
-                f"{int(beyond.sum())} of {len(points)} points lie outside the cage, the farthest (point {worst}) by "
-                f"{distance.max():.4g} m; enlarge the cage or remove them"
-            )
 
 
 def _checked_points(points: np.ndarray) -> np.ndarray:

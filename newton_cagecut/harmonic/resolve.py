@@ -36,6 +36,8 @@ Flux = wp.types.matrix(shape=(FEATURE_COUNT, 3), dtype=wp.float64)
 _PIVOT = wp.constant(wp.float64(1.0e-9))
 _MOST_INFLATION = wp.constant(wp.float64(4.0))
 """Variance of a fit at p, relative to that of a mean, above which the landings do not determine it."""
+_SHORTEST_RADIUS = wp.constant(4.0)
+"""Least first radius that the gradient's estimator divides by, times the number of walks, in the unit frame."""
 _ZERO = wp.constant(wp.float64(0.0))
 _ONE = wp.constant(wp.float64(1.0))
 
@@ -283,7 +285,9 @@ def make_resolve_kernel(*, correction: str, gradients: bool) -> wp.Kernel:
                                 flux[m, axis] += features[m] * normal[axis]
 
         scale = _ONE / wp.float64(walks)
-        flux_scale = scale * wp.float64(3.0) / wp.float64(wp.max(points.first_radius[point], 1.0e-12))
+        # The estimator's factor 3 / r has a variance of about 9 / (r N): next to a wall r is held where that is small.
+        radius = wp.max(points.first_radius[point], _SHORTEST_RADIUS / float(walks))
+        flux_scale = scale * wp.float64(3.0) / wp.float64(radius)
         component = tables.component[landings.face[first_walk]]
         degree = int(0)
         if wp.static(correction == "harmonic"):

@@ -117,8 +117,8 @@ def closest_point_on_triangle(triangles: WallTriangles, t: int, x: wp.vec3) -> w
 def nearer(triangles: WallTriangles, t: int, x: wp.vec3, best: Nearest) -> Nearest:
     """Keep the nearer of ``best`` and triangle ``t``; on a tie the lower index.
 
-    The distance from the plane, then the one across the edges, reject most triangles first. The margin is wider than
-    the rounding of either, so the result does not depend on the order in which triangles are offered.
+    The distance from the plane, then the one across the edges, reject most triangles first, with a margin. Triangles
+    are offered in ascending order everywhere, so a list that leaves far ones out gives the same result, bit for bit.
     """
     reach = best.distance_squared * _TIE + _TINY
     off = plane_distance(triangles, t, x)

@@ -16,9 +16,9 @@ import newton
 import numpy as np
 import warp as wp
 
-from ..cage import Cage
+from ..cage import Cage, check_inside
 from ..elastic import Material
-from ..surface import Surface, check_embedded
+from ..surface import Surface
 from .definition import BodyDefinition, Capacity
 
 FREQUENCY = "cagecut:body"
@@ -103,7 +103,7 @@ def add_cage_body(
     if f"{FREQUENCY}" not in builder.custom_frequencies:
         raise ValueError("call SolverCageCut.register_custom_attributes(builder) before add_cage_body")
     surface = _surface_of(mesh)
-    check_embedded(cage, surface.points)
+    check_inside(cage, surface.points)
     index = len(builder.custom_attributes["cagecut:definition"].values or [])
     if capacity is None:
         capacity = Capacity.for_cuts(cage, surface) if cuttable else Capacity.without_cuts(cage, surface)

@@ -3,7 +3,6 @@
 """Surfaces that a cage carries, and their cuts."""
 
 from .cut import SurfaceCut, SurfaceEdit
-from .embedding import check_embedded
 from .surface import Surface
 
-__all__ = ["Surface", "SurfaceCut", "SurfaceEdit", "check_embedded"]
+__all__ = ["Surface", "SurfaceCut", "SurfaceEdit"]

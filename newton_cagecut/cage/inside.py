@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that a surface lies in the cage that is to carry it.
+"""Checks that points lie in a cage, and their distance from its faces.
 
 Section 3 of the paper defines the coordinates for points inside the cage only.
 """
@@ -9,23 +9,25 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..cage import Cage
+from .cage import Cage
 
 _CHUNK = 1 << 18
 
 
-def check_embedded(cage: Cage, points: np.ndarray) -> None:
+def check_inside(cage: Cage, points: np.ndarray, *, which: np.ndarray | None = None) -> None:
     """Check that points lie inside a cage or, within its tolerance, on it.
 
     Args:
         cage: The cage.
         points: Points, shape (point_count, 3) [m].
+        which: Points to check, by index; all by default.
 
     Raises:
         ValueError: If some points are outside; the text has their count, the worst one and its distance.
     """
     points = np.asarray(points, dtype=np.float64)
-    outside = np.flatnonzero(~cage.contains(points))
+    which = np.arange(len(points)) if which is None else which
+    outside = which[~cage.contains(points[which])]
     if len(outside) == 0:
         return
     distance = boundary_distances(cage, points[outside])
@@ -33,8 +35,8 @@ def check_embedded(cage: Cage, points: np.ndarray) -> None:
     if len(outside):
         worst = int(np.argmax(distance))
         raise ValueError(
-            f"{len(outside)} of {len(points)} points lie outside the cage, point {outside[worst]} the farthest, by "
-            f"{distance[worst]:.6g}; make the cage larger or move the points into it"
+            f"{len(outside)} of {len(points)} points lie outside the cage, the farthest (point {outside[worst]}) by "
+            f"{distance[worst]:.4g} m; make the cage larger or move the points into it"
         )
 
 
@@ -47,12 +49,17 @@ def boundary_distances(cage: Cage, points: np.ndarray) -> np.ndarray:
     """
     corners = cage.vertices[cage.triangles]
     step = max(1, _CHUNK // len(corners))
-    parts = [_triangle_distances(points[i : i + step], corners).min(axis=1) for i in range(0, len(points), step)]
+    parts = [triangle_distances(points[i : i + step], corners).min(axis=1) for i in range(0, len(points), step)]
     return np.concatenate(parts) if parts else np.zeros(0)
 
 
-def _triangle_distances(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Distance of each point to each triangle, shape (point_count, triangle_count) [m]."""
+def triangle_distances(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Distance of each point to each triangle, shape (point_count, triangle_count) [m].
+
+    Args:
+        points: Points, shape (point_count, 3) [m].
+        corners: Triangles, shape (triangle_count, 3, 3) [m].
+    """
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     normal = np.cross(b - a, c - a)
     length = np.linalg.norm(normal, axis=1, keepdims=True)
