@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from newton_cagecut.cage.inside import triangle_distances
 from newton_cagecut.elastic import sample_quadrature
-from newton_cagecut.elastic.quadrature import surface_distances
+from newton_cagecut.elastic.quadrature import _dense_inside
 
 QUADS = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
 
@@ -92,21 +93,55 @@ def test_sparse_cage_gets_its_share():
     assert np.isclose(second.sum(), 60, atol=8)
 
 
-def test_surface_distances_match_a_dense_sample():
+def test_thin_parts_are_covered_to_their_ends():
+    """A rod thinner than the spacing that touches nothing else has points all along."""
+    cage = merge(make_box([0, 0, 0], [1, 1, 1]), make_box([1.5, 0, 0], [6.5, 0.22, 0.22]))
+    points, _ = sample_quadrature(cage, 60, seed=3)
+    spacing = (cage.volume / 60) ** (1.0 / 3.0)
+    along = np.sort(points[points[:, 0] > 1.4, 0])
+    assert spacing > 0.25
+    assert np.diff(along, prepend=1.5, append=6.5).max() < 2.0 * spacing
+
+
+def test_sample_does_not_depend_on_place_and_size():
+    """A cage of a millimetre, or a thousand kilometres from the origin, has the points of the same cage at it."""
+    points, volumes = sample_quadrature(BOX, 60, seed=3)
+    small = make_box(BOX.low * 1e-3, BOX.high * 1e-3)
+    np.testing.assert_allclose(sample_quadrature(small, 60, seed=3)[0], points * 1e-3, rtol=1e-9)
+    far = make_box(BOX.low + 2.0**20, BOX.high + 2.0**20)
+    moved, moved_volumes = sample_quadrature(far, 60, seed=3)
+    nearest = cKDTree(moved - 2.0**20).query(points, k=1)[0]
+    assert cKDTree(moved).query(moved, k=2)[0][:, 1].min() > 0.6 * (BOX.volume / 60) ** (1.0 / 3.0)
+    np.testing.assert_allclose(nearest, 0.0, atol=1e-6)
+
+
+def test_dense_sample_is_inside_and_even():
+    """Cells that no triangle passes are taken or left as a whole, and the others point by point."""
+    tilt = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
+    inner, outer = make_box([0.3, 0.3, 0.3], [0.8, 0.7, 0.6]), make_box([0, 0, 0], [1, 1, 1])
+    hollow = SimpleNamespace(
+        vertices=np.concatenate([outer.vertices, inner.vertices]) @ tilt,
+        triangles=np.concatenate([outer.triangles, inner.triangles[:, ::-1] + 8]),
+        volume=1.0 - 0.06,
+        contains=lambda points: outer.contains(points @ tilt.T) & ~inner.contains(points @ tilt.T),
+    )
+    points = _dense_inside(hollow, 4000, np.random.default_rng(0))
+    assert hollow.contains(points).all()
+    assert len(points) == pytest.approx(3 * 4000, rel=0.01)
+    octants = np.unique((points @ tilt.T > (0.8, 0.7, 0.6)) @ [1, 2, 4], return_counts=True)[1] / len(points)
+    expected = [0.336 - 0.06, 0.084, 0.144, 0.036, 0.224, 0.056, 0.096, 0.024]
+    np.testing.assert_allclose(octants, np.array(expected) / 0.94, atol=0.004)
+
+
+def test_triangle_distances_match_a_dense_sample():
     """Distances to triangles agree with the nearest of very many points on them."""
     rng = np.random.default_rng(4)
     corners, points = rng.normal(size=(5, 3, 3)), rng.normal(size=(40, 3))
     barycentric = rng.dirichlet([0.6, 0.6, 0.6], size=40000)
     surface = np.einsum("sk,tkc->tsc", barycentric, corners).reshape(-1, 3)
-    found, expected = surface_distances(points, corners), cKDTree(surface).query(points)[0]
+    found, expected = triangle_distances(points, corners).min(axis=1), cKDTree(surface).query(points)[0]
     assert np.all(found <= expected + 1e-12)
     np.testing.assert_allclose(found, expected, atol=0.02)
-
-
-def test_degenerate_triangle_has_a_distance():
-    """A triangle without area is a segment."""
-    corners = np.array([[[0.0, 0, 0], [1.0, 0, 0], [2.0, 0, 0]]])
-    assert surface_distances(np.array([[1.0, 3.0, 4.0]]), corners) == pytest.approx([5.0])
 
 
 def test_bad_arguments_are_refused():

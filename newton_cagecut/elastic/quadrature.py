@@ -3,10 +3,10 @@
 
 """Quadrature points: a Poisson-disk sample of a cage's inside, each with its share of the volume.
 
-The paper (section 6.1) takes Poisson-disk samples after Bridson 2007 and keeps gradients off the boundary. Here, random
-dart throwing over a dense, evenly distributed sample of the inside gives the same property in cages that fill
-little of their bounding box (arms, shells), with the wanted count met to a few per cent; the dense sample then also
-measures each point's volume, as that of the part of the cage nearest to it.
+The paper (section 6.1) takes Poisson-disk samples after Bridson 2007 and keeps gradients off the boundary. SciPy has
+Bridson's algorithm for boxes. Here its draws are moved to the nearest of many candidates inside the cage, so that arms
+and shells which fill little of their box cost no more than their own points and are covered to their ends. The dense
+sample that the candidates come from also measures each point's volume, as that of the part of the cage nearest to it.
 """
 
 from __future__ import annotations
@@ -14,11 +14,18 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
+from scipy.ndimage import label
 from scipy.spatial import cKDTree
+from scipy.stats import qmc
 
-_DENSITY = 48
-_BISECTIONS = 14
-_CHUNK = 1 << 18
+from ..cage.inside import triangle_distances
+
+_CELL_POINTS = 3  # of the dense sample in each of its cells
+_CELLS = 16  # of the dense sample for each quadrature point
+_PACKING = 0.8  # points in the volume that is the cube of their least distance
+_DRAWS = 16  # around each point
+_COUNT_TOLERANCE = 0.03
+_TRIES = 12
 
 
 class QuadratureCage(Protocol):
@@ -55,89 +62,109 @@ def sample_quadrature(
     if not 0.0 <= margin < 1.0:
         raise ValueError(f"The quadrature margin is {margin}; it must lie in [0, 1).")
     rng = np.random.default_rng(seed)
-    inside = _dense_inside(cage, count * _DENSITY, rng)
+    inside = _dense_inside(cage, count * _CELLS, rng)
     spacing = (cage.volume / count) ** (1.0 / 3.0)
-    near = surface_distances(inside, cage.vertices[cage.triangles]) < margin * spacing
-    candidates = rng.permutation(inside[~near])
+    candidates = inside[~_near_surface(inside, cage.vertices[cage.triangles], margin * spacing)]
     if not len(candidates):
         raise ValueError(
             f"No point of the cage is {margin * spacing:.6g} m away from its faces: it is too thin for {count} "
             f"quadrature points at margin {margin}. Raise the count or lower the margin."
         )
-    points = candidates[_dart_throw(candidates, count, spacing)]
+    scaled = (candidates - candidates[0]) / spacing
+    points = candidates[_choose(scaled, count, len(candidates) / len(inside), rng)]
     share = np.bincount(cKDTree(points).query(inside)[1], minlength=len(points))
     return points, share * (cage.volume / len(inside))
 
 
-def surface_distances(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Distance of each point to the nearest triangle, shape (point_count,) [m].
+def _near_surface(points: np.ndarray, corners: np.ndarray, distance: float) -> np.ndarray:
+    """Whether each point is nearer to some triangle than a distance."""
+    tree, near = cKDTree(points), np.zeros(len(points), dtype=bool)
+    centers = corners.mean(axis=1)
+    reach = np.linalg.norm(corners - centers[:, None], axis=2).max(axis=1) + distance
+    for triangle, found in enumerate(tree.query_ball_point(centers, reach)):
+        near[found] |= triangle_distances(points[found], corners[[triangle]])[:, 0] < distance
+    return near
 
-    Args:
-        points: Points, shape (point_count, 3) [m].
-        corners: Triangles, shape (triangle_count, 3, 3) [m].
+
+def _dense_inside(cage: QuadratureCage, cell_count: int, rng: np.random.Generator) -> np.ndarray:
+    """Points spread evenly over the cage's inside, in about ``cell_count`` cubes.
+
+    Only the points of cubes that the surface passes are tested one by one; cubes that it keeps apart are inside or
+    outside together.
     """
-    result = np.empty(len(points))
-    step = max(1, _CHUNK // len(corners))
-    for begin in range(0, len(points), step):
-        result[begin : begin + step] = _triangle_distances(points[begin : begin + step], corners).min(axis=1)
-    return result
+    side = (cage.volume / cell_count) ** (1.0 / 3.0)
+    low = cage.vertices.min(axis=0) - side
+    shape = np.ceil((cage.vertices.max(axis=0) - low) / side).astype(int) + 1
+    crossed = _crossed_cells((cage.vertices[cage.triangles] - low) / side, shape)
+    regions = label(~crossed)[0]
+    number, first = np.unique(regions, return_index=True)
+    centers = low + side * (np.stack(np.unravel_index(first, shape), axis=1) + 0.5)
+    whole = np.isin(regions, number[cage.contains(centers) & (number > 0)])
+    points = low + side * _spread(np.argwhere(whole), rng)
+    tested = low + side * _spread(np.argwhere(crossed), rng)
+    return np.concatenate([points, tested[cage.contains(tested)]])
 
 
-def _triangle_distances(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Distance of each point to each triangle: to its plane over the triangle, else to its nearest edge."""
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    lengths = np.linalg.norm(normals, axis=1)
-    normals = normals / np.where(lengths > 0.0, lengths, 1.0)[:, None]
-    above = np.broadcast_to(lengths > 0.0, (len(points), len(corners))).copy()
-    edge_distance = np.full(above.shape, np.inf)
-    for k in range(3):
-        start, edge = corners[:, k], corners[:, (k + 1) % 3] - corners[:, k]
-        offset = points[:, None] - start
-        parameter = np.einsum("ptc,tc->pt", offset, edge)
-        parameter = np.clip(parameter / np.maximum(np.einsum("tc,tc->t", edge, edge), 1e-300), 0.0, 1.0)
-        gap = offset - parameter[..., None] * edge
-        edge_distance = np.minimum(edge_distance, np.einsum("ptc,ptc->pt", gap, gap))
-        above &= np.einsum("ptc,tc->pt", offset, np.cross(normals, edge)) >= 0.0
-    plane_distance = np.abs(np.einsum("ptc,tc->pt", points[:, None] - corners[:, 0], normals))
-    return np.where(above, plane_distance, np.sqrt(edge_distance))
-
-
-def _dense_inside(cage: QuadratureCage, count: int, rng: np.random.Generator) -> np.ndarray:
-    """About ``count`` points spread evenly over the cage's inside (an additive recurrence with plastic steps)."""
-    low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
-    dimension = len(low)
+def _spread(cells: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Points in each unit cell, evenly over all (an additive recurrence with plastic steps)."""
+    dimension = cells.shape[1]
     root = 2.0
     for _ in range(64):
         root = (1.0 + root) ** (1.0 / (dimension + 1))
-    box_count = int(np.ceil(count * np.prod(high - low) / cage.volume))
     steps = root ** -np.arange(1.0, dimension + 1.0)
-    unit = (rng.random(dimension) + np.arange(box_count)[:, None] * steps) % 1.0
-    points = low + unit * (high - low)
-    return points[cage.contains(points)]
+    within = (rng.random(dimension) + np.arange(len(cells) * _CELL_POINTS)[:, None] * steps) % 1.0
+    return np.repeat(cells, _CELL_POINTS, axis=0) + within
 
 
-def _dart_throw(candidates: np.ndarray, count: int, spacing: float) -> np.ndarray:
-    """Indices of a maximal Poisson-disk subset of about ``count`` candidates: the disk's radius is bisected."""
-    tree = cKDTree(candidates)
-    low, high = 0.0, 2.0 * spacing
+def _crossed_cells(corners: np.ndarray, shape: np.ndarray) -> np.ndarray:
+    """Unit cells of a grid that triangles pass, or nearly: those in a triangle's box that its plane passes."""
+    crossed = np.zeros(shape, dtype=bool)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    begin, end = np.floor(corners.min(axis=1) - 1e-6).astype(int), np.floor(corners.max(axis=1) + 1e-6).astype(int) + 1
+    for triangle, normal, first, last in zip(corners, normals, begin, end):
+        axes = [np.arange(a, b) + 0.5 for a, b in zip(first, last)]
+        height = sum(np.ix_(*(n * (axis - x) for n, axis, x in zip(normal, axes, triangle[0]))))
+        crossed[tuple(map(slice, first, last))] |= np.abs(height) <= (0.5 + 1e-6) * np.abs(normal).sum()
+    return crossed
+
+
+def _choose(candidates: np.ndarray, count: int, volume_share: float, rng: np.random.Generator) -> np.ndarray:
+    """Indices of a Poisson-disk sample of about ``count`` candidates, in units of the mean spacing."""
+    radius = (_PACKING * volume_share) ** (1.0 / 3.0)
+    low, high = 0.0, np.inf
     best = np.arange(len(candidates))
-    for _ in range(_BISECTIONS):
-        radius = 0.5 * (low + high)
-        chosen = _throw_once(tree, radius)
+    for _ in range(_TRIES):
+        chosen = _disks(candidates, radius, rng)
         if abs(len(chosen) - count) < abs(len(best) - count):
             best = chosen
-        if len(chosen) == count:
+        if abs(len(chosen) - count) <= _COUNT_TOLERANCE * count:
             break
         low, high = (radius, high) if len(chosen) > count else (low, radius)
+        radius *= (len(chosen) / count) ** 0.4
+        if not low < radius < high:
+            radius = 0.5 * (low + high)
     return best
 
 
-def _throw_once(tree: cKDTree, radius: float) -> np.ndarray:
-    """Take the candidates in order, each unless one taken before is nearer than the radius."""
-    blocked = np.zeros(tree.n, dtype=bool)
-    chosen = []
-    for index in range(tree.n):
-        if not blocked[index]:
-            chosen.append(index)
-            blocked[tree.query_ball_point(tree.data[index], radius)] = True
-    return np.array(chosen)
+def _disks(candidates: np.ndarray, radius: float, rng: np.random.Generator) -> np.ndarray:
+    """Indices of candidates no two of which are nearer than the radius, and to one of which each other one is."""
+    tree = cKDTree(candidates)
+    box = {"l_bounds": candidates.min(axis=0) - radius, "u_bounds": candidates.max(axis=0) + radius}
+    engine = qmc.PoissonDisk(
+        candidates.shape[1], radius=radius, hypersphere="volume", ncandidates=_DRAWS, rng=rng, **box
+    )
+    draw = engine.hypersphere_method
+
+    def draw_candidates(center: np.ndarray, reach: float, count: int) -> np.ndarray:
+        return np.concatenate([center[None], candidates[tree.query(draw(center, reach, count))[1]]])
+
+    engine.hypersphere_method = draw_candidates
+    chosen = np.zeros((0, candidates.shape[1]))
+    uncovered = candidates
+    while len(uncovered):
+        # SciPy grows the sample from its pool, here candidates without a point near them, far from one another
+        _, first = np.unique(np.floor(uncovered / (3.0 * radius)), axis=0, return_index=True)
+        engine.sample_pool = list(uncovered[first])
+        chosen = np.concatenate([chosen, engine.fill_space()])
+        uncovered = uncovered[cKDTree(chosen).query(uncovered)[0] > (1.0 + 1e-4) * radius]
+    return tree.query(chosen)[1]

@@ -1,0 +1,69 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from examples import __main__ as dispatcher
+from examples.cutting import PlannedCut, frames_of
+from examples.scene import CutScene
+from newton_cagecut import Blade
+from newton_cagecut.usd import validate_animation
+
+FAST = ["--viewer", "null", "--quiet", "--test", "--walks", "16", "--pace", "8"]
+
+
+def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> CutScene | None:
+    """Call the dispatcher with a command line."""
+    monkeypatch.setattr("sys.argv", ["examples", *arguments])
+    return dispatcher.main()
+
+
+def test_starfish_is_cut_and_recorded(monkeypatch, tmp_path, capsys):
+    """The starfish passes its own test after all cuts, in three pieces, and leaves a valid animation and a picture."""
+    usd, png = tmp_path / "starfish.usd", tmp_path / "starfish.png"
+    files = ["--usd", str(usd), "--picture", str(png)]
+    scene = run(monkeypatch, "starfish", *FAST, "--num-frames", "20", *files, "--timings")
+    assert (scene.schedule.current, scene.solver.bodies[0].surface.mesh.component_count) == (3, 3)
+    output = capsys.readouterr().out
+    assert validate_animation(usd) == []
+    assert np.array(Image.open(png)).std() > 10.0
+    assert "valid at every sample" in output
+    assert "third arm" in output
+
+
+def test_timings_compare_the_update_with_the_recompute(monkeypatch, capsys):
+    """A slow cut is recomputed on the way, with the same weights, and the table says how much slower that is."""
+    run(monkeypatch, "starfish", *FAST[:-2], "--pace", "4", "--num-frames", "17", "--timings")
+    output = capsys.readouterr().out
+    assert "same weights, bit for bit" in output
+    assert "times faster" in output
+
+
+def test_bunny_is_cut_in_four(monkeypatch):
+    """The bunny passes its own test after both cuts."""
+    scene = run(monkeypatch, "bunny", *FAST, "--num-frames", "15")
+    assert (scene.schedule.current, scene.solver.bodies[0].cage.component_count) == (2, 4)
+
+
+def test_dispatcher_lists_the_scenes(monkeypatch, capsys):
+    """Without a name, each scene is listed with one line."""
+    run(monkeypatch)
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines[2:]] == list(dispatcher.SCENES)
+    assert all(len(line.split()) > 5 for line in lines[2:])
+
+
+def test_dispatcher_refuses_an_unknown_scene(monkeypatch):
+    """A wrong name is an error that lists the right ones."""
+    with pytest.raises(SystemExit, match=r"no scene 'octopus'[\s\S]*starfish[\s\S]*bunny"):
+        run(monkeypatch, "octopus")
+
+
+def test_frames_of_a_plan_are_its_waits_and_its_steps():
+    """Two cuts, one half way, at 3 % a frame."""
+    blade = Blade((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+    plan = [PlannedCut(name="a", blade=blade, wait=5), PlannedCut(name="b", blade=blade, until=0.5)]
+    assert frames_of(plan) == 5 + 34 + 17
