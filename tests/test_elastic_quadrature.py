@@ -144,6 +144,12 @@ def test_triangle_distances_match_a_dense_sample():
     np.testing.assert_allclose(found, expected, atol=0.02)
 
 
+def test_degenerate_triangle_has_a_distance():
+    """A triangle without area is a segment."""
+    corners = np.array([[[0.0, 0, 0], [1.0, 0, 0], [2.0, 0, 0]]])
+    assert triangle_distances(np.array([[1.0, 3.0, 4.0]]), corners)[0, 0] == pytest.approx(5.0)
+
+
 def test_bad_arguments_are_refused():
     """Counts and margins out of range, and a cage too thin for the margin, are refused with the remedy."""
     with pytest.raises(ValueError, match="count is 0"):

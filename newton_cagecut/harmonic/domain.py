@@ -46,7 +46,7 @@ class Domain:
     """
 
     def __init__(
-        self, cage: Cage, *, quads: str, distance: str, device: wp.context.Device, grid_resolution: int = 32
+        self, cage: Cage, *, quads: str, distance: str, device: wp.context.Device, grid_resolution: int = 64
     ) -> None:
         self.cage = cage
         self.quads = quads

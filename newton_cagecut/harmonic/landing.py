@@ -128,32 +128,30 @@ def walk_on_face(
 
 
 @wp.func
-def half_tangent(u: wp.vec2, v: wp.vec2) -> float:
-    """tan(angle / 2) between two vectors."""
-    return wp.abs(cross2(u, v)) / (wp.length(u) * wp.length(v) + wp.dot(u, v))
-
-
-@wp.func
 def mean_value_weights(c0: wp.vec2, c1: wp.vec2, c2: wp.vec2, c3: wp.vec2, x: wp.vec2) -> wp.vec4:
-    """Mean value coordinates of a convex quad (Floater 2003; paper, equation 4), linear on its edges."""
-    corners = wp.matrix_from_rows(c0, c1, c2, c3)
-    weights = wp.vec4()
+    """Mean value coordinates of a convex quad, not normalised (paper, equation 4); linear on its edges.
+
+    tan(angle / 2) = |u x v| / (|u| |v| + u . v) for the angle between two corners as seen from x.
+    """
+    arms = wp.matrix_from_rows(c0 - x, c1 - x, c2 - x, c3 - x)
+    lengths = wp.vec4(wp.length(arms[0]), wp.length(arms[1]), wp.length(arms[2]), wp.length(arms[3]))
+    tangents = wp.vec4()
     for i in range(4):
         j = (i + 1) % 4
-        u = corners[i] - x
-        v = corners[j] - x
-        uv = v - u
-        if wp.length(u) * wp.length(v) + wp.dot(u, v) <= 1.0e-6 * wp.dot(uv, uv):
-            t = wp.clamp(-wp.dot(u, uv) / wp.dot(uv, uv), 0.0, 1.0)
-            edge_weights = wp.vec4()
-            edge_weights[i] = 1.0 - t
-            edge_weights[j] = t
-            return edge_weights
+        u = arms[i]
+        v = arms[j]
+        edge = v - u
+        opening = lengths[i] * lengths[j] + wp.dot(u, v)
+        if opening <= 1.0e-6 * wp.dot(edge, edge):
+            t = wp.clamp(-wp.dot(u, edge) / wp.dot(edge, edge), 0.0, 1.0)
+            on_edge = wp.vec4()
+            on_edge[i] = 1.0 - t
+            on_edge[j] = t
+            return on_edge
+        tangents[i] = wp.abs(cross2(u, v)) / opening
+    weights = wp.vec4()
     for i in range(4):
-        u = corners[i] - x
-        before = half_tangent(corners[(i + 3) % 4] - x, u)
-        after = half_tangent(u, corners[(i + 1) % 4] - x)
-        weights[i] = (before + after) / wp.max(wp.length(u), 1.0e-20)
+        weights[i] = (tangents[(i + 3) % 4] + tangents[i]) / wp.max(lengths[i], 1.0e-20)
     return weights
 
 
