@@ -20,7 +20,7 @@ import warp as wp
 from PIL import Image
 
 from examples.picture_kernels import Look, render_rows
-from newton_cagecut.usd.normals import corner_normals
+from newton_cagecut.usd.normals import vertex_normals
 
 Color = tuple[float, float, float]
 Mesh = tuple[np.ndarray, np.ndarray, "np.ndarray | Color"]
@@ -176,7 +176,16 @@ def _with_corners(number: int, points: np.ndarray, triangles: np.ndarray, color:
         corners = color[triangles.reshape(-1)]
     else:
         raise ValueError(f"mesh {number}: colours of shape {color.shape} fit neither its triangles nor its points")
-    return points, triangles, corner_normals(points, triangles, patch), corners
+    return points, triangles, _corner_normals(points, triangles, patch), corners
+
+
+def _corner_normals(points: np.ndarray, triangles: np.ndarray, patch: np.ndarray) -> np.ndarray:
+    """Return a normal for each corner, smooth among the triangles of one patch only, shape ``(3 m, 3)``."""
+    normals = np.empty((len(triangles), 3, 3), dtype=np.float32)
+    for number in np.unique(patch):
+        rows = patch == number
+        normals[rows] = vertex_normals(points, triangles[rows])[triangles[rows]]
+    return normals.reshape(-1, 3)
 
 
 def _render(

@@ -244,3 +244,22 @@ def test_surface_is_logged_with_the_topology_of_now():
     assert not calls["caps"][2]
     assert calls["skin"][0] == surface.point_count
     assert len(calls["skin"][1]) + len(calls["caps"][1]) == 3 * surface.triangle_count
+
+
+@pytest.mark.parametrize("share", [0.6, 1.0])
+def test_crossing_cuts_keep_surface_points_with_their_piece(share: float):
+    """Where two cuts cross, every surface point gets its weights from the piece of cage that its own piece lies in."""
+    _, solver, *states = make_solver()
+    for origin, edge, until in (([0.503, 0, 0], [0, 1, 0], 1.0), ([0, 0.507, 0], [1, 0, 0], share)):
+        cut = solver.begin_cut(0, cagecut.Blade(origin, edge, [0, 0, -1]))
+        for k in range(1, 6):
+            solver.advance_cut(cut, to=until * cut.length * k / 5, states=states)
+    body = solver.bodies[0]
+    weights = body.coordinates.weights[body.surface_row :]
+    pieces = body.cage.component_count
+    assert pieces == (2 if share < 1.0 else 4)
+    shares = np.stack([weights[:, body.cage.vertex_component == k].sum(axis=1) for k in range(pieces)], axis=1)
+    for piece in range(body.surface.mesh.component_count):
+        rows = shares[body.surface.mesh.vertex_component == piece]
+        home = rows.sum(axis=0).argmax()
+        assert (np.delete(rows, home, axis=1) == 0.0).all()

@@ -150,9 +150,11 @@ def choose_degree(
     count = feature_count_of_degree(max_degree)
     explained = Features()
     for j in range(vertex_count):
-        z = forward_substitute(factor, moments.value[slot, j], count)
-        moments.value[slot, j] = z
-        explained += wp.cw_mul(z, z)
+        right = moments.value[slot, j]
+        if right[0] != _ZERO:  # else no walk reached the vertex
+            z = forward_substitute(factor, right, count)
+            moments.value[slot, j] = z
+            explained += wp.cw_mul(z, z)
     unit = Features()
     unit[0] = _ONE
     unit = forward_substitute(factor, unit, count)
@@ -297,12 +299,14 @@ def make_resolve_kernel(*, correction: str, gradients: bool) -> wp.Kernel:
                 degree = wp.max(degree, 1)
             count = feature_count_of_degree(degree)
             for j in range(vertex_count):
-                fit = back_substitute(gram, moments.value[slot, j], count)
-                for i in range(count, FEATURE_COUNT):
-                    fit[i] = _ZERO
-                moments.value[slot, j] = fit
-                left_over = moments.slope[slot, j] - wp.transpose(flux) * fit
-                moments.slope[slot, j] = wp.vec3d(fit[1], fit[2], fit[3]) + left_over * flux_scale
+                fit = moments.value[slot, j]
+                if fit[0] != _ZERO:
+                    fit = back_substitute(gram, fit, count)
+                    for i in range(count, FEATURE_COUNT):
+                        fit[i] = _ZERO
+                    moments.value[slot, j] = fit
+                    left_over = moments.slope[slot, j] - wp.transpose(flux) * fit
+                    moments.slope[slot, j] = wp.vec3d(fit[1], fit[2], fit[3]) + left_over * flux_scale
             if points.key[point] < 0 and (degree == 0 or is_flat(gram)):
                 degree = 0
                 correct_affinely(moments, tables, slot, component, vertex_count, origin)

@@ -24,6 +24,7 @@ from .report import CutReport
 
 _TRANSFER_WALKS = 4096
 _HELD = 0.999
+_NUDGE = 1.0e-6
 
 
 class BodyCut:
@@ -103,8 +104,10 @@ class BodyCut:
         changed = np.concatenate([surface_edit.created, surface_edit.moved])
         if len(changed):
             surface = surface_edit.surface
+            # Off the other cuts that a point may lie on, into its own piece: faces that meet there are told apart.
+            nudge = _NUDGE * edit.cage.diameter * surface.directions_inward(changed)
             added = body.coordinates.set_points(
-                body.surface_row + changed, surface.points[changed], surface.point_key[changed]
+                body.surface_row + changed, surface.points[changed] + nudge, surface.point_key[changed]
             )
             stats.seconds["new_points"] = added.total_seconds
         return stats

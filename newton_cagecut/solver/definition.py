@@ -34,7 +34,7 @@ class Capacity:
         point_count, triangle_count = len(surface.points), len(surface.triangles)
         spare_points = 1024 + point_count // 2
         return cls(
-            vertices=2 * cage.vertex_count + 64,
+            vertices=4 * cage.vertex_count + 64,
             surface_points=point_count + spare_points,
             surface_triangles=triangle_count + 4 * spare_points,
         )

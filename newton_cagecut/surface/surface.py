@@ -99,6 +99,25 @@ class Surface:
         """Enclosed volume, meaningful if closed [m^3]."""
         return float(self.mesh.face_volume.sum())
 
+    def directions_inward(self, points: np.ndarray) -> np.ndarray:
+        """Unit vectors from points into the solid around them, away from the skin and from every cap, shape (n, 3).
+
+        A point that lies on several cuts belongs to the piece into which this points. It is minus the sum of the
+        normals at the point, one for the skin and one for each wall, so that slivers do not matter.
+
+        Args:
+            points: Point ids, shape (n,).
+        """
+        row = np.full(self.point_count, -1)
+        row[points] = np.arange(len(points))
+        around, corner = np.nonzero(row[self.triangles] >= 0)
+        corners = self.points[self.triangles[around]]
+        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        labels, label = np.unique(self.triangle_cap[around], return_inverse=True)
+        sums = np.zeros((len(points), len(labels), 3))
+        np.add.at(sums, (row[self.triangles[around, corner]], label), normal)
+        return _unit(-_unit(sums).sum(axis=1))
+
     @cached_property
     def triangle_solid(self) -> np.ndarray:
         """Number of the solid that each triangle bounds, shape (triangle_count,).
@@ -119,6 +138,11 @@ class Surface:
             found = np.isfinite(around).any(axis=1)
             solid[cavities[found]] = around[found].argmin(axis=1)
         return solid[mesh.face_component]
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.where(length > 1.0e-30, length, 1.0)
 
 
 def _as_floats(values: np.ndarray, name: str, width: int) -> np.ndarray:

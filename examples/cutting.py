@@ -1,0 +1,92 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""When a scene cuts what: cuts one after the other, each a little deeper every frame."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import newton
+
+from newton_cagecut import Blade, CutReport, SolverCageCut
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlannedCut:
+    """A cut that a scene will make.
+
+    Attributes:
+        name: What is cut.
+        blade: The blade, in the rest frame of the body's cage.
+        wait: Frames after the cut before it, or after the start.
+        until: How far the blade goes, as a fraction of the cut's length.
+        pieces: Pieces of all bodies together after the cut.
+        body: The body's index.
+    """
+
+    name: str
+    blade: Blade
+    wait: int = 0
+    until: float = 1.0
+    pieces: int = 1
+    body: int = 0
+
+
+class CutSchedule:
+    """Makes the cuts of a scene, one after the other.
+
+    Args:
+        solver: The solver.
+        plan: The cuts.
+        step: What the blade advances a frame, as a fraction of the cut's length.
+        pace: How many times shorter the waits are.
+    """
+
+    def __init__(self, solver: SolverCageCut, plan: Sequence[PlannedCut], *, step: float = 0.03, pace: float = 1.0):
+        self._solver, self._plan, self._step, self._pace = solver, tuple(plan), step * pace, pace
+        self._active = None
+        self._number = 0
+        self._waited = 0
+
+    @property
+    def current(self) -> int:
+        """Number of the cut that is being made or waited for."""
+        return self._number
+
+    @property
+    def active(self) -> bool:
+        """Whether a blade is in a body now."""
+        return self._active is not None
+
+    def advance(self, states: Sequence[newton.State]) -> CutReport | None:
+        """Advance the blade by a frame, if there is something to cut in this one.
+
+        Args:
+            states: All states in use.
+        """
+        if self._number == len(self._plan):
+            return None
+        planned = self._plan[self._number]
+        if self._active is None:
+            self._waited += 1
+            if self._waited <= planned.wait / self._pace:
+                return None
+            self._active = self._solver.begin_cut(planned.body, planned.blade)
+        cut = self._active
+        end = planned.until * cut.length
+        report = self._solver.advance_cut(cut, to=min(cut.depth + self._step * cut.length, end), states=states)
+        if cut.complete or cut.depth >= end:
+            self._active, self._waited, self._number = None, 0, self._number + 1
+        return report
+
+
+def frames_of(plan: Sequence[PlannedCut], *, step: float = 0.03) -> int:
+    """Return the frames that the cuts of a plan take, waits included.
+
+    Args:
+        plan: The cuts.
+        step: What the blade advances a frame, as a fraction of the cut's length.
+    """
+    return sum(cut.wait + math.ceil(cut.until / step) for cut in plan)

@@ -1,0 +1,130 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""What a scene leaves in files: an animation whose topology changes, and a picture."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import newton
+import numpy as np
+
+from examples.picture import Mesh, render_png
+from newton_cagecut.usd import AnimationWriter, BodyFrame, validate_animation
+
+if TYPE_CHECKING:
+    from examples.scene import CutScene
+
+PICTURE_SIZE = (1120, 630)
+STATIC_COLOR = (0.30, 0.33, 0.37)  # linear RGB
+
+
+class StaticMesh(NamedTuple):
+    """A part of a scene that does not move.
+
+    Args:
+        name: Name of its USD prim.
+        points: Vertices [m], shape (n, 3).
+        triangles: Triangles, shape (m, 3).
+    """
+
+    name: str
+    points: np.ndarray
+    triangles: np.ndarray
+
+    @staticmethod
+    def of(name: str, mesh: newton.Mesh, place: Sequence[float]) -> StaticMesh:
+        """Return a mesh of Newton's at a place.
+
+        Args:
+            name: Name of its USD prim.
+            mesh: The mesh.
+            place: Where its origin is [m].
+        """
+        return StaticMesh(name, np.asarray(mesh.vertices) + place, np.asarray(mesh.indices).reshape(-1, 3))
+
+
+class Recording:
+    """Records a scene.
+
+    Args:
+        scene: The scene.
+        usd: The USD file, or None for none.
+        picture: The PNG file, or None for none.
+        picture_frame: Frame of the picture, or None for the last one.
+
+    Raises:
+        FileNotFoundError: The folder of a file does not exist.
+    """
+
+    def __init__(self, scene: CutScene, *, usd: str | None, picture: str | None, picture_frame: int | None):
+        if picture is not None and not Path(picture).absolute().parent.is_dir():
+            raise FileNotFoundError(f"the folder of the picture {picture} does not exist")
+        self._scene, self._picture = scene, picture
+        self._picture_frame = picture_frame
+        self._drawn = False
+        self._writer = AnimationWriter(usd, fps=scene.fps) if usd else None
+        if self._writer is not None:
+            self._writer.add_ground_plane()
+            for mesh in scene.static_meshes:
+                self._writer.add_static_mesh(mesh.name, mesh.points, mesh.triangles, mesh_color=STATIC_COLOR)
+
+    def add_frame(self, frame: int) -> None:
+        """Record the scene as it is.
+
+        Args:
+            frame: Number of the frame.
+        """
+        if self._writer is not None:
+            self._writer.write_frame(frame, *self._bodies())
+        if self._picture is not None and frame == self._picture_frame:
+            self._draw()
+
+    def close(self) -> None:
+        """Write the files, check the USD file and say what was written."""
+        if self._picture is not None and not self._drawn:
+            self._draw()
+        if self._writer is None or self._writer.frame is None:
+            return
+        self._writer.close()
+        problems = validate_animation(self._writer.path)
+        verdict = "valid at every sample" if not problems else f"{len(problems)} problems, the first: {problems[0]}"
+        print(f"{self._writer.path}: {_megabytes(self._writer.path)}, {verdict}")
+
+    def _bodies(self) -> list[BodyFrame]:
+        scene = self._scene
+        frames = []
+        for body in scene.solver.bodies:
+            points, triangles = scene.solver.surface(scene.state_0, body.label)
+            frames.append(
+                BodyFrame(
+                    name=body.label,
+                    points=points,
+                    triangles=triangles,
+                    triangle_cap=body.surface.triangle_cap,
+                    rest_points=body.surface.points,
+                    cage_points=scene.state_0.particle_q[body.vertices].numpy()[: body.cage.vertex_count],
+                    cage_faces=body.cage.faces,
+                    skin_color=scene.skin_color,
+                    cap_color=scene.cap_color,
+                )
+            )
+        return frames
+
+    def _draw(self) -> None:
+        scene = self._scene
+        meshes: list[Mesh] = [(mesh.points, mesh.triangles, STATIC_COLOR) for mesh in scene.static_meshes]
+        for body in scene.solver.bodies:
+            points, triangles = scene.solver.surface(scene.state_0, body.label)
+            is_cap = np.asarray(body.surface.triangle_cap) >= 0
+            meshes.append((points, triangles, np.where(is_cap[:, None], scene.cap_color, scene.skin_color)))
+        render_png(self._picture, meshes, scene.camera, PICTURE_SIZE, ground=0.0, ray_count=6)
+        self._drawn = True
+        print(f"{self._picture}: {_megabytes(self._picture)}, frame {scene.frame}")
+
+
+def _megabytes(path: str | os.PathLike) -> str:
+    return f"{os.path.getsize(path) / 1e6:.1f} MB"
