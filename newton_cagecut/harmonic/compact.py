@@ -32,12 +32,14 @@ def mark_walks(
     """Sort a walk into the paper's three classes (section 5.2): walk again, evaluate again on its face, reuse."""
     walk = offset + wp.tid()
     mark = KEPT
+    on_changed_face = changed_keys[landings.key[walk] & KEY_MASK] != wp.uint8(0)
     if overlaps_any(bounds[walk], pieces):
         mark = REWALK
-    elif changed_keys[landings.key[walk] & KEY_MASK] != wp.uint8(0):
+    elif on_changed_face:
         mark = ON_FACE
     marks[walk] = mark
-    if mark != KEPT:
+    # A walk that is walked again touches its point only if it then ends elsewhere, which the walk itself finds out.
+    if on_changed_face:
         touched[walk // walks] = wp.uint8(1)
 
 

@@ -263,7 +263,7 @@ class HarmonicCoordinates:
             rewalk, on_face = gather(marks, int(REWALK)), gather(marks, int(ON_FACE))
         stats.checked = walk_count
         stats.rewalked, stats.on_face = rewalk.size, on_face.size
-        walker.walk(rewalk, stats)
+        walker.walk(rewalk, stats, touched=touched)
         walker.land(rewalk, stats, part="rewalk")
         walker.land(on_face, stats, part="on_face")
         concerned = touched.numpy() != 0

@@ -16,12 +16,15 @@ import numpy as np
 import warp as wp
 
 from .launch import launch
-from .walls import Nearest, Walls, WallTriangles, closest_point_on_triangle, nearer
+from .walls import Nearest, Walls, WallTriangles, closest_point_on_triangle, nearer, plane_distance
 
 wp.set_module_options({"enable_backward": False})
 
 _MARGIN = wp.constant(1.0e-5)
 """Added to the candidate rule: wider than the rounding of the distances that it compares."""
+
+_LATERAL = wp.constant(2.0e-3)
+"""Added to the rule within a plane: its square is wider than the rounding of the squared distances from the plane."""
 
 _COARSEST = 4
 
@@ -109,6 +112,57 @@ def _fill_cells(offset: int, triangles: WallTriangles, parent: GridCells, cells:
             slot += 1
 
 
+@wp.func
+def _lateral_distance(triangles: WallTriangles, t: int, center: wp.vec3) -> float:
+    """Distance within the triangle's plane of a point's projection."""
+    projected = center - triangles.normal[t] * plane_distance(triangles, t, center)
+    return wp.length(projected - closest_point_on_triangle(triangles, t, projected))
+
+
+@wp.struct
+class Reach:
+    """What a cell that new triangles of one wall reach still has to list: see ``_is_candidate``."""
+
+    nearest: float
+    lateral: float
+
+
+@wp.func
+def _is_candidate(triangles: WallTriangles, t: int, wall: int, cells: GridCells, center: wp.vec3, reach: Reach) -> bool:
+    """The rule at the head of the file, and for the new triangles' wall the same rule within its plane.
+
+    The triangles of one wall are all as far from a point as their plane is, so the nearest of them is the one that is
+    nearest within the plane. The pieces of a long cut would crowd the cells beside it otherwise.
+    """
+    diagonal = cells.size * wp.sqrt(3.0)
+    if _center_distance(triangles, t, center) > reach.nearest + diagonal + _MARGIN:
+        return False
+    return triangles.wall[t] != wall or _lateral_distance(triangles, t, center) <= reach.lateral + diagonal + _LATERAL
+
+
+@wp.func
+def _reach_of_new(
+    triangles: WallTriangles, first_new: int, cells: GridCells, cell: int, center: wp.vec3, nearest: float
+) -> Reach:
+    """Least distances with the new triangles; ``lateral`` is negative where none of them reaches the cell."""
+    wall = triangles.wall[first_new]
+    reach = Reach()
+    reach.nearest = nearest
+    reach.lateral = -1.0
+    lateral = float(1.0e30)
+    for t in range(first_new, triangles.count):
+        distance = _center_distance(triangles, t, center)
+        if distance <= nearest + cells.size * wp.sqrt(3.0) + _MARGIN:
+            reach.nearest = wp.min(reach.nearest, distance)
+            lateral = wp.min(lateral, _lateral_distance(triangles, t, center))
+    if lateral < 1.0e30:
+        for item in range(cells.start[cell], cells.start[cell + 1]):
+            if triangles.wall[cells.items[item]] == wall:
+                lateral = wp.min(lateral, _lateral_distance(triangles, cells.items[item], center))
+        reach.lateral = lateral
+    return reach
+
+
 @wp.kernel(enable_backward=False)
 def _measure_new(
     offset: int,
@@ -120,15 +174,18 @@ def _measure_new(
 ):
     cell = offset + wp.tid()
     center = cell_center(cells, cell)
-    old_reach = nearest[cell] + cells.size * wp.sqrt(3.0) + _MARGIN
-    best = nearest[cell]
-    count = int(0)
-    for t in range(first_new, triangles.count):
-        distance = _center_distance(triangles, t, center)
-        best = wp.min(best, distance)
-        if distance <= old_reach:
-            count += 1
-    counts[cell] = cells.start[cell + 1] - cells.start[cell] + count
+    reach = _reach_of_new(triangles, first_new, cells, cell, center, nearest[cell])
+    count = cells.start[cell + 1] - cells.start[cell]
+    if reach.lateral >= 0.0:
+        count = int(0)
+        wall = triangles.wall[first_new]
+        for item in range(cells.start[cell], cells.start[cell + 1]):
+            if _is_candidate(triangles, cells.items[item], wall, cells, center, reach):
+                count += 1
+        for t in range(first_new, triangles.count):
+            if _is_candidate(triangles, t, wall, cells, center, reach):
+                count += 1
+    counts[cell] = count
 
 
 @wp.kernel(enable_backward=False)
@@ -141,22 +198,21 @@ def _fill_merged(
     nearest: wp.array[float],
 ):
     cell = offset + wp.tid()
+    center = cell_center(cells, cell)
+    reach = _reach_of_new(triangles, first_new, old, cell, center, nearest[cell])
+    wall = triangles.wall[first_new]
     slot = cells.start[cell]
     for item in range(old.start[cell], old.start[cell + 1]):
-        cells.items[slot] = old.items[item]
-        slot += 1
-    if cells.start[cell + 1] == slot:
-        return
-    center = cell_center(cells, cell)
-    old_reach = nearest[cell] + cells.size * wp.sqrt(3.0) + _MARGIN
-    best = nearest[cell]
-    for t in range(first_new, triangles.count):
-        distance = _center_distance(triangles, t, center)
-        best = wp.min(best, distance)
-        if distance <= old_reach:
+        t = old.items[item]
+        if reach.lateral < 0.0 or _is_candidate(triangles, t, wall, cells, center, reach):
             cells.items[slot] = t
             slot += 1
-    nearest[cell] = best
+    if reach.lateral >= 0.0:
+        for t in range(first_new, triangles.count):
+            if _is_candidate(triangles, t, wall, cells, center, reach):
+                cells.items[slot] = t
+                slot += 1
+        nearest[cell] = reach.nearest
 
 
 class CandidateGrid:
@@ -178,7 +234,7 @@ class CandidateGrid:
         return 4 * (self.cells.start.size + self.cells.items.size + self._nearest.size)
 
     def merge(self, first_new: int) -> None:
-        """Add the triangles from ``first_new`` on to the cells that they can reach."""
+        """Add the triangles from ``first_new`` on, all of one wall, to the cells that they can reach."""
         old = self.cells
         cell_count = old.start.size - 1
         device = self.walls.device

@@ -38,6 +38,12 @@ def landing_key(triangles: WallTriangles, triangle: int, x: wp.vec3) -> wp.int32
     return key
 
 
+@wp.func
+def differs(a: wp.vec3, b: wp.vec3) -> bool:
+    """Whether two points differ in any bit that counts."""
+    return a[0] != b[0] or a[1] != b[1] or a[2] != b[2]
+
+
 @cache
 def make_walk_kernel(*, distance: str, bounded: bool) -> wp.Kernel:
     """Make the kernel that walks.
@@ -62,6 +68,7 @@ def make_walk_kernel(*, distance: str, bounded: bool) -> wp.Kernel:
         max_steps: int,
         landings: Landings,
         bounds: wp.array[QuantizedExtents],
+        touched: wp.array[wp.uint8],
     ):
         slot = offset + wp.tid()
         walk = slot
@@ -90,6 +97,9 @@ def make_walk_kernel(*, distance: str, bounded: bool) -> wp.Kernel:
             if wp.static(bounded):
                 extents = extend(extents, x, radius)
             if step == 0 and number == wp.uint32(0):
+                if wp.static(bounded):
+                    if points.first_radius[point] != radius:
+                        touched[point] = wp.uint8(1)
                 points.first_radius[point] = radius
             # A point inside the shell still takes its first step, so that its weights reproduce it exactly.
             if radius < wp.where(step == 0, _ON_WALL, epsilon) or step >= max_steps:
@@ -103,6 +113,10 @@ def make_walk_kernel(*, distance: str, bounded: bool) -> wp.Kernel:
         key = landing_key(triangles, nearest.triangle, x)
         if wp.sqrt(nearest.distance_squared) >= epsilon:
             key = key | CAPPED
+        if wp.static(bounded):
+            # A walk that ends where it did before leaves its point's weights alone.
+            if landings.key[walk] != key or differs(landings.point[walk], nearest.point):
+                touched[point] = wp.uint8(1)
         landings.key[walk] = key
         landings.point[walk] = nearest.point
         if wp.static(bounded):

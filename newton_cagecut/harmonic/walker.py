@@ -62,6 +62,7 @@ class Walker:
         kept = point_capacity * options.walks if cuttable else 0
         self.landings = _empty_landings(kept, device)
         self.bounds = wp.empty(kept, dtype=QuantizedExtents, device=device)
+        self._touched = wp.zeros(point_capacity, dtype=wp.uint8, device=device)
         self._make_weights(vertex_capacity or domain.cage.vertex_count)
 
     def require_vertices(self, vertex_count: int) -> None:
@@ -132,14 +133,15 @@ class Walker:
         *,
         first_point: int = 0,
         count: int | None = None,
+        touched: wp.array | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> None:
-        """Walk the walks listed in ``work``, or the first ``count`` where it is empty."""
+        """Walk the walks listed in ``work``, or the first ``count`` where it is empty; mark points that it touched."""
         kernel = make_walk_kernel(distance=self.domain.distance, bounded=self.cuttable)
         options, domain = self.options, self.domain
         inputs = [work, options.walks, first_point * options.walks, wp.uint32(options.seed), self.points]
         inputs += [domain.walls.data, domain.grid.cells, options.epsilon, options.max_steps]
-        inputs += [self.landings, self.bounds]
+        inputs += [self.landings, self.bounds, self._touched if touched is None else touched]
         with stats.time("rewalk", domain.device):
             launch(kernel, work.size if count is None else count, inputs, device=domain.device, progress=progress)
 
