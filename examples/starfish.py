@@ -20,7 +20,8 @@ from newton_cagecut.usd import read_cage, read_surface
 
 ASSETS = Path(__file__).parent.parent / "assets"
 STAND_RADIUS, STAND_HEIGHT = 0.16, 0.26
-CUT_DISTANCE = 0.36  # of the cuts from the middle [m]; closer than 0.23 they would graze the neighbouring arms
+TURN = 0.8 * np.pi  # brings the arms that are cut to the front
+CUT_DISTANCE = 0.38  # of the cuts from the middle [m]; closer than 0.23 they would graze the neighbouring arms
 
 
 def across_arm(arm: int) -> cagecut.Blade:
@@ -30,9 +31,9 @@ def across_arm(arm: int) -> cagecut.Blade:
 
 
 CUTS = (
-    PlannedCut(name="first arm", blade=across_arm(2), wait=30, pieces=2),
-    PlannedCut(name="second arm", blade=across_arm(3), wait=4, pieces=3),
-    PlannedCut(name="third arm", blade=across_arm(4), wait=4, until=0.66, pieces=3),
+    PlannedCut(name="first arm", blade=across_arm(0), wait=30, pieces=2),
+    PlannedCut(name="second arm", blade=across_arm(1), wait=4, pieces=3),
+    PlannedCut(name="third arm", blade=across_arm(2), wait=4, until=0.66, pieces=3),
 )
 
 
@@ -50,7 +51,7 @@ class Example(CutScene):
             read_cage(ASSETS / "starfish_cage.usda"),
             read_surface(ASSETS / "starfish.usdc"),
             material=cagecut.Material(young=2e4, poisson=0.4, density=1000.0, damping=0.01),
-            xform=wp.transform((0.0, 0.0, STAND_HEIGHT + 0.1), wp.quat_identity()),
+            xform=wp.transform((0.0, 0.0, STAND_HEIGHT + 0.1), wp.quat_from_axis_angle(wp.vec3(0.0, 0.0, 1.0), TURN)),
             contact_radius=0.004,
             walks=self.walks,
             label="starfish",
