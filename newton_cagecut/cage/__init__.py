@@ -4,10 +4,22 @@
 
 from .blade import Blade, BladePlane
 from .cage import Cage
-from .cut import Cut
+from .cut import Cut, CutSnapshot
 from .edit import CageEdit
+from .pieces import CagePiece
 from .polygon_mesh import PolygonMesh
 from .triangulate import triangulate
 from .wall import Wall
 
-__all__ = ["Blade", "BladePlane", "Cage", "CageEdit", "Cut", "PolygonMesh", "Wall", "triangulate"]
+__all__ = [
+    "Blade",
+    "BladePlane",
+    "Cage",
+    "CageEdit",
+    "CagePiece",
+    "Cut",
+    "CutSnapshot",
+    "PolygonMesh",
+    "Wall",
+    "triangulate",
+]

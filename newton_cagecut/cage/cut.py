@@ -8,6 +8,8 @@ computed once; every advance opens it anew up to the blade.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from .blade import Blade, BladePlane
@@ -19,6 +21,17 @@ from .polygon_mesh import PolygonMesh
 from .region import Region
 from .section import Section
 from .triangulate import triangulate
+
+
+@dataclass(frozen=True, eq=False)
+class CutSnapshot:
+    """Where a cut was; made by :meth:`Cut.snapshot`."""
+
+    section: Section
+    depth: float
+    front: float
+    cage: Cage
+    half_edge_face: np.ndarray
 
 
 class Cut:
@@ -78,12 +91,7 @@ class Cut:
             TypeError: If the depth is not a number.
             ValueError: If the depth is not a number's value, or less than the depth now.
         """
-        try:
-            depth = float(to)
-        except (TypeError, ValueError):
-            raise TypeError(f"the depth of a cut must be a number, got {to!r}") from None
-        if np.isnan(depth):
-            raise ValueError("the depth of a cut must be a number, got nan")
+        depth = _as_depth(to)
         if depth < self.depth:
             raise ValueError(f"a cut never goes back: it has reached depth {self.depth:g}, asked for {depth:g}")
         before, front_before = self.cage, self.front
@@ -114,6 +122,39 @@ class Cut:
             moved=moved,
             source_faces=source,
         )
+
+    def snapshot(self) -> CutSnapshot:
+        """Remember where the cut is, for :meth:`rewind`; nothing is copied."""
+        return CutSnapshot(self.section, self.depth, self.front, self.cage, self._half_edge_face)
+
+    def rewind(self, to: float | CutSnapshot = 0.0) -> Cage:
+        """Take the blade back and the cut with it: a cut is a function of its depth, so nothing of it stays.
+
+        Args:
+            to: A snapshot of this cut, whose very cage comes back, or a depth, of which an equal cage is made [m].
+
+        Returns:
+            The cage, the same to the last bit as when the cut had been there on its way.
+
+        Raises:
+            TypeError: If the depth is not a number.
+            ValueError: If the depth is not a number's value, negative or beyond the depth now, or the snapshot is of
+                another cut. Nothing has changed then.
+        """
+        if isinstance(to, CutSnapshot):
+            if to.section is not self.section:
+                raise ValueError("the snapshot is of another cut; rewind that one, or take a snapshot of this one")
+            self.depth, self.front, self.cage = to.depth, to.front, to.cage
+            self._half_edge_face = to.half_edge_face
+            return self.cage
+        depth = _as_depth(to)
+        if not 0.0 <= depth <= self.depth:
+            raise ValueError(f"a cut is rewound to a depth between 0 and {self.depth:g}, where it is, not to {depth:g}")
+        self.depth, self.front = 0.0, self._front_at(0.0)
+        self.cage, self._half_edge_face = self.base, self.base.mesh.face
+        if depth > 0.0:
+            self.advance(to=depth)
+        return self.cage
 
     def _empty_edit(self) -> CageEdit:
         none = np.zeros(0, dtype=np.int64)
@@ -160,6 +201,16 @@ class Cut:
         created = np.arange(before.vertex_count, self.cage.vertex_count)
         moved = np.flatnonzero((before.vertices != self.cage.vertices[: before.vertex_count]).any(axis=1))
         return created, moved, self._half_edge_face[half_edge[np.concatenate([created, moved])]]
+
+
+def _as_depth(to: float) -> float:
+    try:
+        depth = float(to)
+    except (TypeError, ValueError):
+        raise TypeError(f"the depth of a cut must be a number, got {to!r}") from None
+    if np.isnan(depth):
+        raise ValueError("the depth of a cut must be a number, got nan")
+    return depth
 
 
 def clear_plane(plane: BladePlane, points: np.ndarray, tolerance: float) -> BladePlane:

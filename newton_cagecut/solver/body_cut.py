@@ -88,7 +88,7 @@ class BodyCut:
             depth=cut.depth,
             complete=cut.complete,
             components=edit.cage.component_count,
-            separated=edit.cage.component_count > edit.before.component_count,
+            separated=edit.separated,
             vertices_created=len(edit.created),
             points_created=len(surface_edit.created),
             stats=stats,

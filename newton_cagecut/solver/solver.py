@@ -15,6 +15,7 @@ from ..cage import Blade
 from .body import CageBody
 from .body_cut import BodyCut
 from .builder import register_custom_attributes
+from .pieces import BodyPiece, body_pieces
 from .plan import PlanEntry, plan_of
 from .report import CutReport
 from .viewing import SurfaceViewer
@@ -160,6 +161,17 @@ class SolverCageCut(newton.solvers.SolverBase):
         """
         found = self.body(body)
         return found.surface_points(state).numpy().copy(), np.array(found.surface.triangles, dtype=np.int32)
+
+    def pieces(self, body: int | str = 0) -> tuple[BodyPiece, ...]:
+        """The pieces that a body is in: vertices, faces, surface points and triangles, volume and mass of each.
+
+        Args:
+            body: Index or label of the body.
+
+        Raises:
+            ValueError: There is no such body.
+        """
+        return body_pieces(self.body(body))
 
     def log(self, viewer: newton.viewer.ViewerBase, state: newton.State) -> None:
         """Show the surfaces in any Newton viewer, with the topology of this frame; caps have a colour of their own."""

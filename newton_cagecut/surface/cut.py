@@ -38,6 +38,15 @@ class SurfaceEdit:
         return self.surface is self.before
 
 
+@dataclass(frozen=True, eq=False)
+class SurfaceSnapshot:
+    """Where a surface's cut was; made by :meth:`SurfaceCut.snapshot`."""
+
+    section: Section
+    front: float
+    surface: Surface
+
+
 class SurfaceCut:
     """A cut on its way through a surface."""
 
@@ -99,6 +108,27 @@ class SurfaceCut:
         if len(created) == len(moved) == 0:
             self.surface = before
         return SurfaceEdit(before, self.surface, created, moved)
+
+    def snapshot(self) -> SurfaceSnapshot:
+        """Remember where the cut is, for :meth:`rewind`; nothing is copied."""
+        return SurfaceSnapshot(self._section, self.front, self.surface)
+
+    def rewind(self, to: SurfaceSnapshot | None = None) -> Surface:
+        """Take the cut back to a snapshot, or to the surface before the cut.
+
+        Args:
+            to: A snapshot of this cut; None for before the cut.
+
+        Returns:
+            The surface as it was, the very object.
+
+        Raises:
+            ValueError: If the snapshot is of another cut. Nothing has changed then.
+        """
+        if to is not None and to.section is not self._section:
+            raise ValueError("the snapshot is of another cut; rewind that one, or take a snapshot of this one")
+        self.front, self.surface = (-np.inf, self.base) if to is None else (to.front, to.surface)
+        return self.surface
 
     def _open_surface(self, opening: Opening) -> Surface:
         base, wall = self.base, self.wall
