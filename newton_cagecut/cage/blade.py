@@ -78,6 +78,14 @@ class BladePlane:
         """
         return BladePlane(self.origin + offset * self.normal, self.edge, self.direction, self.normal)
 
+    def at(self, front: float) -> BladePlane:
+        """The same plane with its origin moved to a front.
+
+        Args:
+            front: Coordinate s of the front [m].
+        """
+        return BladePlane(self.origin + front * self.direction, self.edge, self.direction, self.normal)
+
     def distance(self, points: np.ndarray) -> np.ndarray:
         """Signed distance, the same to the last bit for the same point, shape (point_count,) [m].
 
@@ -103,6 +111,53 @@ class BladePlane:
     def wall(self) -> Wall:
         """The wall that a cut along this plane leaves."""
         return Wall(self.origin, np.stack([self.edge, np.cross(self.normal, self.edge)]), self.normal, two_sided=True)
+
+
+def clear_plane(plane: BladePlane, points: np.ndarray, tolerance: float) -> BladePlane:
+    """The plane moved, by as little as can be, so that no point is within the tolerance of it.
+
+    Args:
+        plane: The plane.
+        points: Points to keep off, shape (point_count, 3) [m].
+        tolerance: Distance to keep [m].
+    """
+    distance = plane.distance(points)
+    if len(distance) == 0 or np.abs(distance).min() > tolerance:
+        return plane
+    return plane.shifted(_nearest_gap(distance, np.full(len(distance), 1.5 * tolerance)))
+
+
+def clear_turn(plane: BladePlane, points: np.ndarray, tolerance: float) -> BladePlane:
+    """The plane turned about its line ``s = 0``, by as little as can be, so that no point is within the tolerance.
+
+    Points beside or behind that line do not count.
+
+    Args:
+        plane: The plane.
+        points: Points to keep off, shape (point_count, 3) [m].
+        tolerance: Distance to keep [m].
+    """
+    across = np.cross(plane.normal, plane.edge)
+    height, ahead = plane.distance(points), _dot(points - plane.origin, across)
+    close = (ahead > 8.0 * tolerance) & (np.abs(height) < 0.25 * ahead)
+    height, ahead = height[close], ahead[close]
+    if len(height) == 0 or np.abs(height).min() > tolerance:
+        return plane
+    angle = _nearest_gap(np.arctan2(height, ahead), 1.5 * tolerance / ahead)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    along = plane.direction @ plane.edge
+    turned = cosine * across + sine * plane.normal
+    direction = along * plane.edge + np.sqrt(1.0 - along * along) * turned
+    return BladePlane(plane.origin, plane.edge, direction, cosine * plane.normal - sine * across)
+
+
+def _nearest_gap(position: np.ndarray, margin: np.ndarray) -> float:
+    """The value nearest to zero that keeps every position at its margin."""
+    order = np.argsort(position - margin, kind="stable")
+    low, high = (position - margin)[order], np.maximum.accumulate((position + margin)[order])
+    lowest, highest = np.concatenate([[-np.inf], high]), np.concatenate([low, [np.inf]])
+    nearest = np.clip(0.0, lowest, highest)[lowest <= highest]
+    return float(nearest[np.argmin(np.abs(nearest))])
 
 
 def _dot(vectors: np.ndarray, axis: np.ndarray) -> np.ndarray:

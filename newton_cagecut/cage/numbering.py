@@ -25,7 +25,8 @@ class Numbering:
         count = section.node_count
         touching: list[list[int]] = [[] for _ in range(count)]
         first = section.chord_ends[:, 0].tolist()
-        for chord, (start, end) in enumerate(section.chord_node.tolist()):
+        existing = section.node_vertex.tolist()
+        for chord, (start, end) in enumerate(section.chord_node[section.chord_face >= 0].tolist()):
             touching[start].append(chord)
             touching[end].append(chord)
         base = section.mesh.vertex_count
@@ -35,12 +36,14 @@ class Numbering:
         for place, node in enumerate(np.argsort(section.node_rank).tolist()):
             arriving = [tip[chord] for chord in touching[node] if first[chord] != node]
             leaving = [chord for chord in touching[node] if first[chord] == node]
-            missing = max(0, len(leaving) + 2 - len(arriving))
+            own = 2 if existing[node] < 0 else 1
+            missing = max(0, len(leaving) + own - len(arriving))
             ids = arriving + list(range(created, created + missing))
             created += missing
             for k, chord in enumerate(leaving):
                 tip[chord] = ids[k]
-            plus[node], minus[node] = ids[len(leaving)], ids[len(leaving) + 1]
+            minus[node] = ids[len(leaving) + own - 1]
+            plus[node] = ids[len(leaving)] if own == 2 else existing[node]
             total[place + 1] = created - base
         self.plus = np.array(plus, dtype=np.int64)
         """Vertex on the positive side of each opened node, shape (node_count,)."""

@@ -50,7 +50,8 @@ class Opening:
         """
         first, swept = self.section.mesh.vertex_count, self.region.swept
         values = np.zeros((self.created_count, *at_nodes.shape[1:]), dtype=at_nodes.dtype)
-        values[self.numbering.plus[swept] - first] = at_nodes[swept]
+        opened = swept & (self.section.node_vertex < 0)
+        values[self.numbering.plus[opened] - first] = at_nodes[opened]
         values[self.numbering.minus[swept] - first] = at_nodes[swept]
         values[self.numbering.tip[self.tip_chords] - first] = at_tips
         return values
@@ -67,12 +68,14 @@ class Opening:
 
     def _hops(self) -> dict[int, tuple[tuple[int, ...], int]]:
         """For each half-edge with an open crossing: vertices to insert and the half-edge with which to go on."""
-        section, mesh = self.section, self.section.mesh
+        section = self.section
         touched = np.flatnonzero(self._open_ends.any(axis=1))
-        half = section.half_edge[section.chord_slot[touched]]
+        touched = touched[section.chord_face[touched] >= 0]
+        slots = section.chord_slot[touched]
+        half, leave = section.arrive[slots], section.leave[slots]
         node = section.chord_node[touched]
         plus, minus = self.numbering.plus[node].tolist(), self.numbering.minus[node].tolist()
-        columns = (half.tolist(), mesh.next[half].tolist(), plus, minus)
+        columns = (half.tolist(), leave.tolist(), plus, minus)
         tips = self.numbering.tip[touched].tolist()
         hops: dict[int, tuple[tuple[int, ...], int]] = {}
         for h, after, p, m, tip, is_open in zip(*columns, tips, self._open_ends[touched].tolist(), strict=True):
@@ -88,14 +91,21 @@ class Opening:
     def _walk_faces(self) -> None:
         """Walk the loops of the touched faces, the first of each keeping the face's place."""
         section, mesh = self.section, self.section.mesh
-        self.faces = np.unique(section.chord_face[self._open_ends.any(axis=1)])
+        self.face_vertex = mesh.face_vertex
+        """Vertex at which each half-edge of the mesh starts, after the opening, shape (half_edge_count,)."""
+        parted = self.region.swept[section.parted_node]
+        if parted.any():
+            self.face_vertex = mesh.face_vertex.copy()
+            self.face_vertex[section.parted[parted]] = self.numbering.minus[section.parted_node[parted]]
+        self.faces = np.unique(section.chord_face[self._open_ends.any(axis=1) & (section.chord_face >= 0)])
         """Faces of the mesh that are slit or split, ascending, shape (touched_count,)."""
         hops = self._hops()
         self.first_loops: list[list[int]] = []
         """What stays in the place of each touched face."""
         extra: dict[int, list[list[int]]] = {}
         place: dict[int, tuple[int, int]] = {}
-        flat, following = mesh.face_vertex, mesh.next
+        flat, following = self.face_vertex, mesh.next
+        hinge = set(section.hinge_corner.tolist()) if hops else set()
         for face, begin, end in zip(
             self.faces.tolist(),
             mesh.face_start[self.faces].tolist(),
@@ -105,7 +115,7 @@ class Opening:
             vertex, after = flat[begin:end].tolist(), following[begin:end].tolist()
             loops: list[list[int]] = []
             for start in range(begin, end):
-                if start in place:
+                if start in place or start in hinge:
                     continue
                 loop, h = [], start
                 while h not in place:
@@ -120,12 +130,15 @@ class Opening:
                 loops.append(loop)
             self.first_loops.append(loops[0])
             extra[face] = loops[1:]
+        for h, corner in zip(section.hinge_arrive.tolist(), section.hinge_corner.tolist(), strict=True):
+            if h in place:
+                place[corner] = place[h]
         self._place_extra(extra, place)
 
     def _place_extra(self, extra: dict[int, list[list[int]]], place: dict[int, tuple[int, int]]) -> None:
         """Order the further loops by when the chord that split them off was completed, so that their places last."""
         section, mesh = self.section, self.section.mesh
-        complete = np.flatnonzero(self._open_ends.all(axis=1))
+        complete = np.flatnonzero(self._open_ends.all(axis=1) & (section.chord_face >= 0))
         done = section.node_rank[section.chord_ends[complete, 1]]
         complete = complete[np.argsort(done, kind="stable")]
         taken = dict.fromkeys(extra, 0)
