@@ -77,6 +77,11 @@ class Cut:
         return self._state.cage
 
     @property
+    def hinged(self) -> bool:
+        """Whether the present plane begins at ``s = 0``, at the front of an earlier part of the cut."""
+        return self._strip.hinged
+
+    @property
     def plane(self) -> BladePlane:
         """The plane in which the blade moves, moved off the cage's vertices."""
         return self._strip.plane

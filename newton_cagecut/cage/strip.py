@@ -22,6 +22,7 @@ from .polygon_mesh import PolygonMesh
 from .region import Region
 from .section import Section
 from .triangulate import triangulate
+from .wall import Wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +53,9 @@ class Strip:
         self.plane = plane
         self.wall = len(base.walls)
         """Number of the strip's wall in the walls of the cage, once it has begun to open."""
+        self.hinged = hinge is not None
+        """Whether the strip begins at ``s = 0``."""
+        self._opened_wall = plane.wall()
         self.section = Section(base.mesh, plane, hinge=hinge)
         self._numbering = Numbering(self.section)
         self._reached_at = np.sort(self.section.node_coordinates[:, 1])
@@ -108,7 +112,7 @@ class Strip:
         if len(opening.tip_chords) == 0 and not region.reached.any():
             return self._stay(state, front, depth)
         polygons = region.polygons()
-        cage = open_cage(self.base, opening, self.plane)
+        cage = open_cage(self.base, opening, self._opened_wall)
         created, moved, source = self._changed_vertices(state, cage, opening, region)
         triangles = [np.array(loop)[triangulate(region.coordinates[loop])] for loop in polygons]
         edit = CageEdit(
@@ -161,13 +165,13 @@ class Strip:
         return created, moved, state.half_edge_face[half_edge[np.concatenate([created, moved])]]
 
 
-def open_cage(base: Cage, opening: Opening, plane: BladePlane) -> Cage:
+def open_cage(base: Cage, opening: Opening, wall: Wall) -> Cage:
     """The cage that a section opened up to a front leaves.
 
     Args:
         base: The cage before the cut.
         opening: The section opened.
-        plane: The plane of the cut.
+        wall: The wall that the cut appends.
     """
     mesh = base.mesh
     minus, plus = opening.side_vertices()
@@ -188,11 +192,11 @@ def open_cage(base: Cage, opening: Opening, plane: BladePlane) -> Cage:
         face_vertex[face_start[face] : face_start[face + 1]] = loop
     if appended:
         face_vertex[face_start[mesh.face_count] :] = np.concatenate(appended)
-    wall, extra = len(base.walls), opening.extra_face
+    number, extra = len(base.walls), opening.extra_face
     return Cage._assembled(
         base,
         PolygonMesh(np.concatenate([mesh.vertices, opening.created_positions()]), face_start, face_vertex),
-        (*base.walls, plane.wall()),
-        np.concatenate([base.face_wall, base.face_wall[extra], np.full(len(sides), wall)]).astype(np.int64),
+        (*base.walls, wall),
+        np.concatenate([base.face_wall, base.face_wall[extra], np.full(len(sides), number)]).astype(np.int64),
         np.concatenate([base.face_side, base.face_side[extra], np.tile([0, 1], len(sides) // 2)]).astype(np.int64),
     )

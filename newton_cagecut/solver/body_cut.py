@@ -56,14 +56,25 @@ class BodyCut:
         """Whether nothing is left to cut."""
         return self.cut.complete
 
+    def turn(self, direction: np.ndarray) -> None:
+        """Turn the blade about its present front line, in the cage's rest frame; see ``Cut.turn``."""
+        cut, surface_cut = copy.copy(self.cut), copy.copy(self._surface_cut)
+        if cut.cage is not self.body.cage:
+            cut.resume(self.body.cage)
+            surface_cut.go_on(cut.plane, cut.wall, surface=self.body.surface, hinged=cut.hinged)
+        cut.turn(direction)
+        surface_cut.go_on(cut.plane, cut.wall, hinged=cut.hinged)
+        self.cut, self._surface_cut = cut, surface_cut
+
     def advance(self, to: float, states: Sequence[newton.State]) -> CutReport:
         """Advance the blade to a depth [m] and carry the body's data over, in the given states too."""
         body = self.body
-        if self.cut.cage is not body.cage:
-            raise ValueError(f"another cut has changed {body.label} since this one began; begin a new cut")
         seconds: dict[str, float] = {}
         clock = _Clock(seconds)
         cut, surface_cut = copy.copy(self.cut), copy.copy(self._surface_cut)
+        if cut.cage is not body.cage:
+            cut.resume(body.cage)
+            surface_cut.go_on(cut.plane, cut.wall, surface=body.surface, hinged=cut.hinged)
         edit = cut.advance(to=to)
         clock.lap("topology")
         surface_edit = surface_cut.advance(edit.front) if edit.cage is not edit.before else _no_change(body)

@@ -136,6 +136,8 @@ class SolverCageCut(newton.solvers.SolverBase):
     ) -> CutReport:
         """Advance a cut: the model edit. A failed edit leaves model, states and weights as they were.
 
+        Cuts of one body may advance in turn; ``cut.turn(direction)`` bends one at its present front.
+
         Args:
             cut: The cut.
             by: Length to advance by, in the rest frame [m].
@@ -146,8 +148,8 @@ class SolverCageCut(newton.solvers.SolverBase):
             What was done.
 
         Raises:
-            ValueError: Neither or both of ``by`` and ``to`` are given, the cut would go back, another cut has changed
-                the body since this one began, or the result does not fit the reserved capacity.
+            ValueError: Neither or both of ``by`` and ``to`` are given, the cut would go back, or the result does not
+                fit the reserved capacity.
         """
         if (by is None) == (to is None):
             raise ValueError("advance_cut needs either a length to advance by or to=depth")

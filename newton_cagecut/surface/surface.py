@@ -46,6 +46,7 @@ class Surface:
         if self.uvs is not None and len(self.uvs) != len(self.points):
             raise ValueError(f"the surface has {len(self.points)} points but {len(self.uvs)} uvs; give each one")
         self.triangle_cap = _as_labels(triangle_cap, "triangle_cap", len(self.triangles))
+        self.cap_side = np.zeros(len(self.triangles), dtype=np.int8)
         self.point_key = _as_labels(point_key, "point_key", len(self.points))
         self._freeze()
 
@@ -56,17 +57,18 @@ class Surface:
         triangles: np.ndarray,
         uvs: np.ndarray | None,
         triangle_cap: np.ndarray,
+        cap_side: np.ndarray,
         point_key: np.ndarray,
     ) -> Surface:
         """A surface that a cut made, taken as it is."""
         surface = cls.__new__(cls)
         surface.points, surface.triangles, surface.uvs = points, triangles, uvs
-        surface.triangle_cap, surface.point_key = triangle_cap, point_key
+        surface.triangle_cap, surface.cap_side, surface.point_key = triangle_cap, cap_side, point_key
         surface._freeze()
         return surface
 
     def _freeze(self) -> None:
-        for array in (self.points, self.triangles, self.uvs, self.triangle_cap, self.point_key):
+        for array in (self.points, self.triangles, self.uvs, self.triangle_cap, self.cap_side, self.point_key):
             if array is not None:
                 array.setflags(write=False)
 
@@ -88,6 +90,11 @@ class Surface:
         """The triangles with their half-edges."""
         start = np.arange(0, 3 * self.triangle_count + 1, 3)
         return PolygonMesh(self.points, start, self.triangles.reshape(-1).astype(np.int64))
+
+    @property
+    def triangle_key(self) -> np.ndarray:
+        """``2 * wall + side`` of the side of a cut that each triangle caps, -1 for the others, shape (m,)."""
+        return np.where(self.triangle_cap >= 0, 2 * self.triangle_cap + self.cap_side, -1)
 
     @cached_property
     def closed(self) -> bool:
