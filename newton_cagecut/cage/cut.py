@@ -144,8 +144,8 @@ class Cut:
         """
         if self.complete:
             raise ValueError("the cut is complete: there is no front to turn about; begin a new cut")
-        plane = self.plane
-        blade = Blade(plane.origin + self.front * plane.direction, plane.edge, direction)
+        plane = self._front_plane()
+        blade = Blade(plane.origin, plane.edge, direction)
         if np.dot(_across(blade.direction, plane.edge), _across(plane.direction, plane.edge)) < _LEAST_TURN_COSINE:
             raise ValueError("the blade would turn back into its own cut; turn it by less than 170 degrees")
         self._go_on(self.cage, BladePlane.of(blade))
@@ -165,32 +165,31 @@ class Cut:
             raise ValueError("the cage did not come of this cut's: it lacks some of its walls; begin a new cut")
         if self.complete:
             self._state = StripState(cage, self.front, self._state.half_edge_face)
-        elif len(self.cage.walls) == len(self._strips[0][0].base.walls):
+        elif not (self._is_open or self.hinged):
             plane = clear_plane(BladePlane.of(self._blade), cage.vertices, cage.length_tolerance)
-            self._begin((), Strip(cage, plane, first=self._strip.first), 0.0)
-            self._state = StripState(cage, self._strip.front_at(self.depth), cage.mesh.face)
+            self._begin((), Strip(cage, plane), 0.0)
         else:
-            self._go_on(cage, self.plane.at(self.front))
+            self._go_on(cage, self._front_plane())
+
+    @property
+    def _is_open(self) -> bool:
+        """Whether the present plane's wall has begun to open."""
+        return self.cage is not self._strip.base
+
+    def _front_plane(self) -> BladePlane:
+        """The present plane with its origin at the front."""
+        return self.plane.at(max(self.front, 0.0) if self.hinged else self.front)
 
     def _go_on(self, cage: Cage, plane: BladePlane) -> None:
-        """Begin a strip at the present front."""
-        hinge = self._hinge(cage)
+        """Begin a strip at the present front, in place of one that was begun here and not opened."""
+        strip, begun = self._strips[-1]
+        wall = strip.wall if self._is_open else strip.hinge_wall
+        hinge = _find_hinge(cage, wall, self._front_plane())
         others = np.delete(cage.vertices, hinge.vertices, axis=0)
         plane = clear_turn(plane, others, cage.length_tolerance)
-        self._begin(self._strips, Strip(cage, plane, first=0.0, hinge=hinge), self.depth)
-
-    def _hinge(self, cage: Cage) -> Hinge:
-        """Where both sides of the present wall meet at the front."""
-        mesh, tolerance = cage.mesh, 0.5 * cage.length_tolerance
-        key = cage.face_key[mesh.face]
-        on_front = np.ones(cage.vertex_count, dtype=bool)
-        for side in (0, 1):
-            used = np.zeros(cage.vertex_count, dtype=bool)
-            used[mesh.face_vertex[key == 2 * self.wall + side]] = True
-            on_front &= used
-        s = self.plane.coordinates(cage.vertices)[:, 1]
-        on_front &= (np.abs(s - self.front) <= tolerance) & (np.abs(self.plane.distance(cage.vertices)) <= tolerance)
-        return Hinge.of(mesh, cage.face_key, self.wall, on_front)
+        replaced = self.hinged and not self._is_open and begun == self.depth
+        strips = self._strips[:-1] if replaced else self._strips
+        self._begin(strips, Strip(cage, plane, first=0.0, hinge=hinge, hinge_wall=wall), self.depth)
 
     def snapshot(self) -> CutSnapshot:
         """Remember where the cut is, for :meth:`rewind`; nothing is copied."""
@@ -227,6 +226,21 @@ class Cut:
         if depth > begun:
             self.advance(to=depth)
         return self.cage
+
+
+def _find_hinge(cage: Cage, wall: int | None, plane: BladePlane) -> Hinge:
+    """Where both sides of a wall meet on the line ``s = 0`` of a plane."""
+    mesh, tolerance = cage.mesh, 0.5 * cage.length_tolerance
+    if wall is None:
+        return Hinge(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+    key = cage.face_key[mesh.face]
+    on_front = np.abs(plane.coordinates(cage.vertices)[:, 1]) <= tolerance
+    on_front &= np.abs(plane.distance(cage.vertices)) <= tolerance
+    for side in (0, 1):
+        used = np.zeros(cage.vertex_count, dtype=bool)
+        used[mesh.face_vertex[key == 2 * wall + side]] = True
+        on_front &= used
+    return Hinge.of(mesh, cage.face_key, wall, on_front)
 
 
 def _across(direction: np.ndarray, edge: np.ndarray) -> np.ndarray:

@@ -40,7 +40,15 @@ class StripState:
 class Strip:
     """One plane's part of a cut."""
 
-    def __init__(self, base: Cage, plane: BladePlane, *, first: float | None = None, hinge: Hinge | None = None):
+    def __init__(
+        self,
+        base: Cage,
+        plane: BladePlane,
+        *,
+        first: float | None = None,
+        hinge: Hinge | None = None,
+        hinge_wall: int | None = None,
+    ):
         """Section a cage.
 
         Args:
@@ -48,6 +56,7 @@ class Strip:
             plane: The plane.
             first: Coordinate s of depth zero; by default where the blade first touches [m].
             hinge: Front of the strip before, at ``s = 0``.
+            hinge_wall: Wall of the strip before, where that has begun to open.
         """
         self.base = base
         self.plane = plane
@@ -55,6 +64,8 @@ class Strip:
         """Number of the strip's wall in the walls of the cage, once it has begun to open."""
         self.hinged = hinge is not None
         """Whether the strip begins at ``s = 0``."""
+        self.hinge_wall = hinge_wall
+        """Wall of which the front is the strip's hinge."""
         self._opened_wall = plane.wall()
         self.section = Section(base.mesh, plane, hinge=hinge)
         self._numbering = Numbering(self.section)
