@@ -63,9 +63,11 @@ class SurfaceCut:
 
         Raises:
             TypeError: If the surface is not a surface.
+            ValueError: If an edge of it has more than two triangles or is not consistently oriented.
         """
         if not isinstance(surface, Surface):
             raise TypeError(f"surface must be a Surface, got {type(surface).__name__}")
+        surface.refuse_branches()
         self._identity = object()
         self._begin(surface, plane, wall, None)
         self._before = self.snapshot()
@@ -178,20 +180,25 @@ class SurfaceCut:
         return Surface._assembled(
             np.concatenate([base.points, opening.created_positions()]),
             np.concatenate([kept, added, caps]).astype(np.int32),
-            None if base.uvs is None else np.concatenate([base.uvs, self._created_uvs(opening)]),
+            self._carried(opening, base.uvs),
+            None if base.normals is None else _unit(self._carried(opening, base.normals)),
             np.concatenate([base.triangle_cap, base.triangle_cap[owner], np.full(len(caps), wall, dtype=np.int32)]),
             np.concatenate([base.cap_side, base.cap_side[owner], side]),
             np.concatenate([base.point_key, keys]),
         )
 
-    def _created_uvs(self, opening: Opening) -> np.ndarray:
-        chords = opening.tip_chords
-        low, high = self._section.chord_ends[chords].T
-        s = self._section.node_coordinates[:, 1]
+    def _carried(self, opening: Opening, values: np.ndarray | None) -> np.ndarray | None:
+        """Values of all points from those of the points before, linear along edges and chords."""
+        if values is None:
+            return None
+        section, chords = self._section, opening.tip_chords
+        above, below = values[section.node_above], values[section.node_below]
+        at_nodes = above + section.node_fraction[:, None] * (below - above)
+        low, high = section.chord_ends[chords].T
+        s = section.node_coordinates[:, 1]
         t = ((self.front - s[low]) / (s[high] - s[low]))[:, None]
-        above, below = self.base.uvs[self._section.node_above], self.base.uvs[self._section.node_below]
-        uvs = above + self._section.node_fraction[:, None] * (below - above)
-        return opening.created_values(uvs, uvs[low] + t * (uvs[high] - uvs[low]))
+        at_tips = at_nodes[low] + t * (at_nodes[high] - at_nodes[low])
+        return np.concatenate([values, opening.created_values(at_nodes, at_tips)])
 
     def _split_triangles(self, opening: Opening) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Triangles in the places of the old ones, further ones, and the old one of each of those."""
@@ -215,6 +222,11 @@ class SurfaceCut:
         kept = opening.face_vertex.reshape(-1, 3).copy()
         kept[owners[is_first]] = triangles[is_first]
         return kept, triangles[~is_first], owners[~is_first]
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors / np.where(length > 0.0, length, 1.0)
 
 
 def _keep(polygons: np.ndarray, opening: Opening, tip: np.ndarray) -> np.ndarray:
