@@ -125,8 +125,8 @@ CONVEX = ("tetrahedron", "box", "hexagonal_prism", "merged_cube")
 def opened_characteristic(base: Cage, cage: Cage, wall: int) -> int:
     """Euler characteristic that opening a wall of a cut must leave.
 
-    Each opened sheet adds twice its own characteristic (one, less one for each hole) less one for each segment of the
-    front, along which its two sides stay together.
+    Each opened sheet adds twice its own characteristic (one, less one for each hole) less one for each stretch of its
+    border along which its two sides stay together.
     """
     mesh = cage.mesh
     on_wall = cage.face_wall == wall
@@ -134,6 +134,9 @@ def opened_characteristic(base: Cage, cage: Cage, wall: int) -> int:
     counts = on_wall[face] & (side == 0)
     bridges = np.count_nonzero(counts & (face[mesh.twin] == face)) // 2
     fronts = np.count_nonzero(counts & on_wall[face[mesh.twin]] & (side[mesh.twin] == 1))
+    elsewhere = np.zeros(cage.vertex_count, dtype=bool)
+    elsewhere[mesh.face_vertex[~on_wall[face]]] = True
+    fronts -= np.count_nonzero(~elsewhere)
     sheets = np.count_nonzero(on_wall & (cage.face_side == 0))
     return base.euler_characteristic + 2 * (sheets - bridges - fronts)
 

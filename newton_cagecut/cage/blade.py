@@ -19,13 +19,25 @@ _LEAST_SINE = 1e-3
 class Blade:
     """A straight edge that moves in one direction, in the rest frame."""
 
-    def __init__(self, origin: np.ndarray, edge: np.ndarray, direction: np.ndarray):
+    def __init__(
+        self,
+        origin: np.ndarray,
+        edge: np.ndarray,
+        direction: np.ndarray,
+        *,
+        width: float | tuple[float, float] | None = None,
+        start: float | None = None,
+    ):
         """Define a blade.
 
         Args:
             origin: A point of the plane that the blade sweeps, shape (3,) [m].
             edge: Direction of the blade's line, of any length, shape (3,).
             direction: Direction in which the blade moves, of any length, not along the edge, shape (3,).
+            width: Where the knife ends along its edge, from the origin: (heel, tip), or one length for both ways
+                together with the origin in the middle; None for a knife without ends [m].
+            start: Where the knife starts along its direction, from the origin; what lies behind is not cut. None for
+                outside of the body [m].
 
         Raises:
             TypeError: If something is not three numbers.
@@ -41,8 +53,18 @@ class Blade:
                 f"the blade's edge and direction are parallel (sine of their angle {sine:.3g}): they span no plane"
             )
         self.normal = normal / sine
+        self.heel, self.tip = _as_width(width)
+        self.start = -np.inf if start is None else float(start)
+        if np.isnan(self.start) or self.start == np.inf:
+            raise ValueError(f"the blade's start must be a length, got {start!r}")
         for vector in (self.origin, self.edge, self.direction, self.normal):
             vector.setflags(write=False)
+
+    @property
+    def window(self) -> tuple[float, float, float] | None:
+        """Heel, tip and start, None where the blade has none of them [m]."""
+        window = (self.heel, self.tip, self.start)
+        return window if np.isfinite(window).any() else None
 
     def __repr__(self) -> str:
         return f"Blade(origin={self.origin.tolist()}, edge={self.edge.tolist()}, direction={self.direction.tolist()})"
@@ -163,6 +185,18 @@ def _nearest_gap(position: np.ndarray, margin: np.ndarray) -> float:
 def _dot(vectors: np.ndarray, axis: np.ndarray) -> np.ndarray:
     """Dot products by element-wise arithmetic, which does not depend on a vector's place in the array."""
     return vectors[:, 0] * axis[0] + vectors[:, 1] * axis[1] + vectors[:, 2] * axis[2]
+
+
+def _as_width(width: float | tuple[float, float] | None) -> tuple[float, float]:
+    if width is None:
+        return -np.inf, np.inf
+    try:
+        heel, tip = (float(end) for end in (width if np.ndim(width) else (-0.5 * width, 0.5 * width)))
+    except (TypeError, ValueError):
+        raise TypeError(f"the blade's width must be a length or (heel, tip), got {width!r}") from None
+    if not heel < tip:
+        raise ValueError(f"the blade's heel must lie before its tip, got ({heel:g}, {tip:g})")
+    return heel, tip
 
 
 def _as_vector(value: np.ndarray, name: str) -> np.ndarray:

@@ -61,7 +61,7 @@ class Cut:
         self._identity = object()
         self._blade = blade
         plane = clear_plane(BladePlane.of(blade), cage.vertices, cage.length_tolerance)
-        self._begin((), Strip(cage, plane), 0.0)
+        self._begin((), Strip(cage, plane, window=blade.window), 0.0)
 
     def _begin(self, before: tuple[tuple[Strip, float], ...], strip: Strip, depth: float) -> None:
         self._strips: tuple[tuple[Strip, float], ...] = (*before, (strip, depth))
@@ -167,7 +167,7 @@ class Cut:
             self._state = StripState(cage, self.front, self._state.half_edge_face)
         elif not (self._is_open or self.hinged):
             plane = clear_plane(BladePlane.of(self._blade), cage.vertices, cage.length_tolerance)
-            self._begin((), Strip(cage, plane), 0.0)
+            self._begin((), Strip(cage, plane, window=self._blade.window), 0.0)
         else:
             self._go_on(cage, self._front_plane())
 
@@ -182,6 +182,11 @@ class Cut:
 
     def _go_on(self, cage: Cage, plane: BladePlane) -> None:
         """Begin a strip at the present front, in place of one that was begun here and not opened."""
+        if self._blade.window is not None:
+            raise ValueError(
+                "a knife of finite width, or one that starts inside, neither turns nor goes on after another cut; "
+                "begin a new cut"
+            )
         strip, begun = self._strips[-1]
         wall = strip.wall if self._is_open else strip.hinge_wall
         hinge = _find_hinge(cage, wall, self._front_plane())

@@ -45,7 +45,10 @@ class CageEdit:
     moved: np.ndarray
     """Ids of the vertices that have moved, shape (moved_count,)."""
     source_faces: np.ndarray
-    """For the created, then the moved vertices: a face of ``before`` that holds their position, shape (count,)."""
+    """For the created, then the moved vertices: a face of ``before`` that holds their position, shape (count,).
+
+    It is -1 for those inside the body, at the corners of the front of a knife of finite width.
+    """
 
     @property
     def is_empty(self) -> bool:

@@ -178,6 +178,46 @@ class Section:
         along = position[:, 0] * line[0] + position[:, 1] * line[1] + position[:, 2] * line[2]
         return slots[np.array(alternate(along, self._goes_down[slots]))]
 
+    def node_values(self, values: np.ndarray) -> np.ndarray:
+        """Values at the nodes from those at the vertices, linear along the edges.
+
+        Args:
+            values: Values of the mesh's vertices, shape (vertex_count, ...).
+
+        Returns:
+            Values, shape (node_count, ...).
+        """
+        above, below = values[self.node_above], values[self.node_below]
+        return above + self.node_fraction[:, None] * (below - above)
+
+    @cached_property
+    def node_pinned(self) -> np.ndarray:
+        """Whether both sides of the cut share the node, which no edge crosses, shape (node_count,)."""
+        return np.zeros(self.node_count, dtype=bool)
+
+    @property
+    def tipped(self) -> np.ndarray:
+        """Whether a chord has a vertex where the front crosses it, which those along a hinge have not."""
+        return self.chord_face >= 0
+
+    @cached_property
+    def chord_swells(self) -> np.ndarray:
+        """Whether the slit along a chord gets a vertex on each side to open at, shape (chord_count,)."""
+        return np.zeros(self.chord_count, dtype=bool)
+
+    @cached_property
+    def chord_bulges(self) -> np.ndarray:
+        """Whether a chord gets a vertex on each side once it is open, to tell it from its loop's only other chord.
+
+        Such loops go around cuts of finite width that the plane crosses.
+        """
+        bulges = np.zeros(self.chord_count, dtype=bool)
+        closed = np.flatnonzero(self.chord_loop >= 0)
+        loops, first, count = np.unique(self.chord_loop[closed], return_index=True, return_counts=True)
+        pairs = closed[first[count == 2]]
+        bulges[pairs] = ~self.node_pinned[self.chord_node[pairs]].any(axis=1) & (self.chord_face[pairs] >= 0)
+        return bulges
+
     @property
     def hinge_arrive(self) -> np.ndarray:
         """Half-edges that arrive at the hinge's corners, shape (corner_count,)."""

@@ -23,6 +23,7 @@ from .region import Region
 from .section import Section
 from .triangulate import triangulate
 from .wall import Wall
+from .window import ClippedSection
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +49,7 @@ class Strip:
         first: float | None = None,
         hinge: Hinge | None = None,
         hinge_wall: int | None = None,
+        window: tuple[float, float, float] | None = None,
     ):
         """Section a cage.
 
@@ -57,6 +59,10 @@ class Strip:
             first: Coordinate s of depth zero; by default where the blade first touches [m].
             hinge: Front of the strip before, at ``s = 0``.
             hinge_wall: Wall of the strip before, where that has begun to open.
+            window: Heel, tip and start of the blade, which bound coordinates a, a and s [m].
+
+        Raises:
+            ValueError: If the window lies inside the body, or the section does not close at the hinge.
         """
         self.base = base
         self.plane = plane
@@ -68,6 +74,10 @@ class Strip:
         """Wall of which the front is the strip's hinge."""
         self._opened_wall = plane.wall()
         self.section = Section(base.mesh, plane, hinge=hinge)
+        if window is not None:
+            self.section = ClippedSection(self.section, *window, base.length_tolerance)
+        self.window = window
+        """Heel, tip and start of the blade [m]."""
         self._numbering = Numbering(self.section)
         self._reached_at = np.sort(self.section.node_coordinates[:, 1])
         touches = len(self._reached_at) > 0
@@ -170,10 +180,16 @@ class Strip:
         half_edge[numbering.plus[fresh]] = half_edge[numbering.minus[fresh]] = section.node_half_edge[fresh]
         chords = opening.tip_chords
         ahead = np.where(opening.region.swept[section.chord_node[chords, 0]], 1, 0)
-        half_edge[numbering.tip[chords]] = section.arrive[section.chord_slot[chords, ahead]]
+        slots = section.chord_slot[chords, ahead]
+        half_edge[numbering.tip[chords]] = np.where(slots >= 0, section.arrive[slots], -1)
+        middles = opening.region.middles
+        slots = section.chord_slot[middles, 0]
+        for ids in (numbering.middle_plus[middles], numbering.middle_minus[middles]):
+            half_edge[ids] = np.where(slots >= 0, section.arrive[slots], -1)
         created = np.arange(before.vertex_count, cage.vertex_count)
         moved = np.flatnonzero((before.vertices != cage.vertices[: before.vertex_count]).any(axis=1))
-        return created, moved, state.half_edge_face[half_edge[np.concatenate([created, moved])]]
+        half_edge = half_edge[np.concatenate([created, moved])]
+        return created, moved, np.where(half_edge >= 0, state.half_edge_face[half_edge], -1)
 
 
 def open_cage(base: Cage, opening: Opening, wall: Wall) -> Cage:
