@@ -18,6 +18,7 @@ from .builder import register_custom_attributes
 from .pieces import BodyPiece, body_pieces
 from .plan import PlanEntry, plan_of
 from .report import CutReport
+from .undo import BodySnapshot
 from .viewing import SurfaceViewer
 
 
@@ -154,6 +155,29 @@ class SolverCageCut(newton.solvers.SolverBase):
         if (by is None) == (to is None):
             raise ValueError("advance_cut needs either a length to advance by or to=depth")
         return cut.advance(cut.depth + by if to is None else to, tuple(states))
+
+    def snapshot(
+        self, body: int | str = 0, *, states: Sequence[newton.State] = (), cuts: Sequence[BodyCut] = ()
+    ) -> BodySnapshot:
+        """Keep all that cuts of a body change, for :meth:`restore`; as many bytes as its walks and weights.
+
+        Args:
+            body: Index or label of the body.
+            states: States whose rows of the body are to be brought back too.
+            cuts: Cuts that are to go on from where they are; others must be begun anew after ``restore``.
+
+        Raises:
+            ValueError: There is no such body, or it was added with cuttable=False.
+        """
+        return BodySnapshot(self.body(body), tuple(states), tuple(cuts))
+
+    def restore(self, snapshot: BodySnapshot) -> None:
+        """Undo every cut since a snapshot: cage, weights, surface, masses and the states' rows are as they were.
+
+        Args:
+            snapshot: A snapshot of a body of this solver.
+        """
+        snapshot.restore()
 
     def surface(self, state: newton.State, body: int | str = 0) -> tuple[np.ndarray, np.ndarray]:
         """The surface of a body in a state.
