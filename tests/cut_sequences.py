@@ -166,3 +166,27 @@ def _pierced(cage: Cage, edges: np.ndarray) -> int:
     longest = np.linalg.norm(np.stack([u, v, u - v]), axis=2).max(axis=0)[t]
     margin = 1e-7 * longest / area[t]
     return int(np.count_nonzero((b > margin) & (c > margin) & (b + c < 1.0 - margin)))
+
+
+def long_sequence(seed: int) -> tuple:
+    """A sequence of 26 operations from a seed, for the tests and for nightly runs."""
+    rng = np.random.default_rng(seed)
+
+    def vector() -> tuple:
+        return tuple(rng.integers(-5, 6, 3)) if rng.random() < 0.4 else tuple(rng.normal(size=3))
+
+    def blade() -> tuple:
+        kind, pick = int(rng.integers(7)), int(rng.integers(1000))
+        return ("cut", kind, pick, tuple(rng.uniform(0.1, 0.9, 3)), vector(), vector())
+
+    steps = []
+    for _ in range(25):
+        share = rng.random()
+        if share < 0.3:
+            steps.append(blade())
+        elif share < 0.45:
+            steps.append(("turn", int(rng.integers(3)), float(rng.uniform(-1.6, 1.6))))
+        else:
+            which, parts = int(rng.integers(3)), [rng.uniform(0, 0.5), rng.uniform(0, 1.1), 1.1]
+            steps.append(("advance", which, float(rng.choice(parts))))
+    return blade(), steps

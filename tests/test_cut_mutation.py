@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from cut_sequences import CAGES, SEQUENCES, check_step, play
+from cut_sequences import CAGES, SEQUENCES, check_step, long_sequence, play
 from newton_cagecut.harmonic import HarmonicCoordinates
 
 COUNT = 2000 if os.environ.get("CAGECUT_NIGHTLY") == "1" else 200
@@ -40,6 +40,21 @@ def test_random_sequences(name, sequence):
     """Every step leaves a closed manifold of planar faces that cross nowhere, of the volume and characteristic due."""
     cage = cage_of(name)
     play(cage, sequence, lambda edit, cut, base: check_step(edit, cut, base, cage.volume))
+
+
+@pytest.mark.parametrize("name", CAGES)
+def test_long_sequences(name):
+    """Sequences of 26 operations, three a cage or thirty in the nightly run; the seed is printed with a failure."""
+    cage = cage_of(name)
+    for seed in range(30 if COUNT > 200 else 3):
+        print(f"{name}: seed {seed}")
+        play(cage, long_sequence(seed), lambda edit, cut, base: check_step(edit, cut, base, cage.volume))
+
+
+def test_bridge_at_the_front():
+    """A cut that turns at a vertex to which a bridge leads goes on in the right one of the face's corners there."""
+    cage = cage_of("square_torus")
+    play(cage, long_sequence(5326), lambda edit, cut, base: check_step(edit, cut, base, cage.volume))
 
 
 @pytest.mark.parametrize("name", ["box", "square_torus", "star_shaped"])

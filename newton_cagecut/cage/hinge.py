@@ -12,7 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .blade import BladePlane
 from .polygon_mesh import PolygonMesh
+
+_STRAIGHT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +41,38 @@ class Hinge:
         along = (mesh.twin >= 0) & on_front[mesh.face_vertex] & on_front[mesh.destination]
         edges = np.flatnonzero(along & (key == 2 * wall) & (key[mesh.twin] == 2 * wall + 1))
         return cls(edges, np.flatnonzero(on_front))
+
+
+def corner_ahead(mesh: PolygonMesh, corners: list[int], plane: BladePlane) -> int:
+    """The corner, of several at one vertex, into which the plane goes on.
+
+    Bridges and slits that end at the vertex divide its face's angle there.
+
+    Args:
+        mesh: The polygons.
+        corners: Half-edges that start at the vertex.
+        plane: The plane, with the vertex at ``s = 0``.
+    """
+    best, least = corners[0], np.inf
+    for corner in corners:
+        here = mesh.vertices[mesh.face_vertex[corner]]
+        normal = mesh.face_area_vector[mesh.face[corner]]
+        normal = normal / np.linalg.norm(normal)
+        ahead = np.cross(plane.normal, normal)
+        ahead *= np.sign(ahead @ np.cross(plane.normal, plane.edge))
+        out = mesh.vertices[mesh.destination[corner]] - here
+        back = mesh.vertices[mesh.face_vertex[_previous(mesh, corner)]] - here
+        turn, whole = _angle(out, ahead, normal), _angle(out, back, normal)
+        whole = whole if whole > _STRAIGHT else 2.0 * np.pi
+        excess = max(0.0, turn - whole)
+        if min(excess, 2.0 * np.pi - turn) < least:
+            best, least = corner, min(excess, 2.0 * np.pi - turn)
+    return best
+
+
+def _angle(one: np.ndarray, other: np.ndarray, normal: np.ndarray) -> float:
+    """Angle from one direction to another, counterclockwise about a normal, from 0 to 2 pi."""
+    return float(np.arctan2(np.cross(one, other) @ normal, one @ other) % (2.0 * np.pi))
 
 
 def corners_to_part(mesh: PolygonMesh, edges: np.ndarray, corner: int, down: bool) -> list[int]:

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from .blade import BladePlane
-from .hinge import Hinge, corners_to_part
+from .hinge import Hinge, corner_ahead, corners_to_part
 from .pairing import alternate
 from .polygon_mesh import PolygonMesh
 
@@ -110,8 +110,12 @@ class Section:
         at = np.full(mesh.vertex_count, -1)
         at[hinge.vertices] = np.arange(len(hinge.vertices))
         corner = np.flatnonzero((at[mesh.face_vertex] >= 0) & (balance[mesh.face] != 0.0))
-        chosen = np.unique(mesh.face_vertex[corner], return_index=True)[1]
-        self.hinge_corner = corner = corner[chosen]
+        _, chosen, count = np.unique(mesh.face_vertex[corner], return_index=True, return_counts=True)
+        several = mesh.face_vertex[corner[chosen[count > 1]]].tolist()
+        of_several = {vertex: corner[mesh.face_vertex[corner] == vertex].tolist() for vertex in several}
+        corner = corner[chosen]
+        corner[count > 1] = [corner_ahead(mesh, of_several[vertex], self.plane) for vertex in several]
+        self.hinge_corner = corner
         if len(corner) != np.abs(balance).sum():
             raise ValueError(
                 "the section does not close at the front of the cut before it: faces "
