@@ -4,9 +4,10 @@
 
 from .blade import Blade, BladePlane
 from .cage import Cage
-from .cut import Cut
+from .cut import Cut, CutSnapshot
 from .edit import CageEdit
 from .inside import boundary_distances, check_inside
+from .pieces import CagePiece
 from .polygon_mesh import PolygonMesh
 from .triangulate import triangulate
 from .wall import Wall
@@ -16,7 +17,9 @@ __all__ = [
     "BladePlane",
     "Cage",
     "CageEdit",
+    "CagePiece",
     "Cut",
+    "CutSnapshot",
     "PolygonMesh",
     "Wall",
     "boundary_distances",

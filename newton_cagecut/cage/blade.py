@@ -19,13 +19,25 @@ _LEAST_SINE = 1e-3
 class Blade:
     """A straight edge that moves in one direction, in the rest frame."""
 
-    def __init__(self, origin: np.ndarray, edge: np.ndarray, direction: np.ndarray):
+    def __init__(
+        self,
+        origin: np.ndarray,
+        edge: np.ndarray,
+        direction: np.ndarray,
+        *,
+        width: float | tuple[float, float] | None = None,
+        start: float | None = None,
+    ):
         """Define a blade.
 
         Args:
             origin: A point of the plane that the blade sweeps, shape (3,) [m].
             edge: Direction of the blade's line, of any length, shape (3,).
             direction: Direction in which the blade moves, of any length, not along the edge, shape (3,).
+            width: Where the knife ends along its edge, from the origin: (heel, tip), or one length for both ways
+                together with the origin in the middle; None for a knife without ends [m].
+            start: Where the knife starts along its direction, from the origin; what lies behind is not cut. None for
+                outside of the body [m].
 
         Raises:
             TypeError: If something is not three numbers.
@@ -41,8 +53,18 @@ class Blade:
                 f"the blade's edge and direction are parallel (sine of their angle {sine:.3g}): they span no plane"
             )
         self.normal = normal / sine
+        self.heel, self.tip = _as_width(width)
+        self.start = -np.inf if start is None else float(start)
+        if np.isnan(self.start) or self.start == np.inf:
+            raise ValueError(f"the blade's start must be a length, got {start!r}")
         for vector in (self.origin, self.edge, self.direction, self.normal):
             vector.setflags(write=False)
+
+    @property
+    def window(self) -> tuple[float, float, float] | None:
+        """Heel, tip and start, None where the blade has none of them [m]."""
+        window = (self.heel, self.tip, self.start)
+        return window if np.isfinite(window).any() else None
 
     def __repr__(self) -> str:
         return f"Blade(origin={self.origin.tolist()}, edge={self.edge.tolist()}, direction={self.direction.tolist()})"
@@ -78,6 +100,14 @@ class BladePlane:
         """
         return BladePlane(self.origin + offset * self.normal, self.edge, self.direction, self.normal)
 
+    def at(self, front: float) -> BladePlane:
+        """The same plane with its origin moved to a front.
+
+        Args:
+            front: Coordinate s of the front [m].
+        """
+        return BladePlane(self.origin + front * self.direction, self.edge, self.direction, self.normal)
+
     def distance(self, points: np.ndarray) -> np.ndarray:
         """Signed distance, the same to the last bit for the same point, shape (point_count,) [m].
 
@@ -105,9 +135,68 @@ class BladePlane:
         return Wall(self.origin, np.stack([self.edge, np.cross(self.normal, self.edge)]), self.normal, two_sided=True)
 
 
+def clear_plane(plane: BladePlane, points: np.ndarray, tolerance: float) -> BladePlane:
+    """The plane moved, by as little as can be, so that no point is within the tolerance of it.
+
+    Args:
+        plane: The plane.
+        points: Points to keep off, shape (point_count, 3) [m].
+        tolerance: Distance to keep [m].
+    """
+    distance = plane.distance(points)
+    if len(distance) == 0 or np.abs(distance).min() > tolerance:
+        return plane
+    return plane.shifted(_nearest_gap(distance, np.full(len(distance), 1.5 * tolerance)))
+
+
+def clear_turn(plane: BladePlane, points: np.ndarray, tolerance: float) -> BladePlane:
+    """The plane turned about its line ``s = 0``, by as little as can be, so that no point is within the tolerance.
+
+    Points beside or behind that line do not count.
+
+    Args:
+        plane: The plane.
+        points: Points to keep off, shape (point_count, 3) [m].
+        tolerance: Distance to keep [m].
+    """
+    across = np.cross(plane.normal, plane.edge)
+    height, ahead = plane.distance(points), _dot(points - plane.origin, across)
+    close = (ahead > 8.0 * tolerance) & (np.abs(height) < 0.25 * ahead)
+    height, ahead = height[close], ahead[close]
+    if len(height) == 0 or np.abs(height).min() > tolerance:
+        return plane
+    angle = _nearest_gap(np.arctan2(height, ahead), 1.5 * tolerance / ahead)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    along = plane.direction @ plane.edge
+    turned = cosine * across + sine * plane.normal
+    direction = along * plane.edge + np.sqrt(1.0 - along * along) * turned
+    return BladePlane(plane.origin, plane.edge, direction, cosine * plane.normal - sine * across)
+
+
+def _nearest_gap(position: np.ndarray, margin: np.ndarray) -> float:
+    """The value nearest to zero that keeps every position at its margin."""
+    order = np.argsort(position - margin, kind="stable")
+    low, high = (position - margin)[order], np.maximum.accumulate((position + margin)[order])
+    lowest, highest = np.concatenate([[-np.inf], high]), np.concatenate([low, [np.inf]])
+    nearest = np.clip(0.0, lowest, highest)[lowest <= highest]
+    return float(nearest[np.argmin(np.abs(nearest))])
+
+
 def _dot(vectors: np.ndarray, axis: np.ndarray) -> np.ndarray:
     """Dot products by element-wise arithmetic, which does not depend on a vector's place in the array."""
     return vectors[:, 0] * axis[0] + vectors[:, 1] * axis[1] + vectors[:, 2] * axis[2]
+
+
+def _as_width(width: float | tuple[float, float] | None) -> tuple[float, float]:
+    if width is None:
+        return -np.inf, np.inf
+    try:
+        heel, tip = (float(end) for end in (width if np.ndim(width) else (-0.5 * width, 0.5 * width)))
+    except (TypeError, ValueError):
+        raise TypeError(f"the blade's width must be a length or (heel, tip), got {width!r}") from None
+    if not heel < tip:
+        raise ValueError(f"the blade's heel must lie before its tip, got ({heel:g}, {tip:g})")
+    return heel, tip
 
 
 def _as_vector(value: np.ndarray, name: str) -> np.ndarray:

@@ -2,23 +2,39 @@
 # SPDX-License-Identifier: Apache-2.0
 """Progressive cuts of cages.
 
-Section 5.2 of the paper. A cut is a pure function: (cage before the cut, blade, depth) -> cage. The section is
-computed once; every advance opens it anew up to the blade.
+Section 5.2 of the paper. A cut is a pure function: (cage before the cut, blade, depth) -> cage, with the turns of the
+blade, each at its depth, as a part of the blade.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from .blade import Blade, BladePlane
+from .blade import Blade, BladePlane, clear_plane, clear_turn
 from .cage import Cage
 from .edit import CageEdit
-from .numbering import Numbering
-from .opening import Opening
-from .polygon_mesh import PolygonMesh
-from .region import Region
+from .hinge import Hinge
 from .section import Section
-from .triangulate import triangulate
+from .strip import Strip, StripState
+
+_LEAST_TURN_COSINE = -0.985
+
+
+@dataclass(frozen=True, eq=False)
+class CutSnapshot:
+    """Where a cut was; made by :meth:`Cut.snapshot`."""
+
+    identity: object
+    strips: tuple[tuple[Strip, float], ...]
+    depth: float
+    state: StripState
+
+    @property
+    def cage(self) -> Cage:
+        """The cage at the time."""
+        return self.state.cage
 
 
 class Cut:
@@ -40,30 +56,60 @@ class Cut:
             raise TypeError(f"blade must be a Blade, got {type(blade).__name__}")
         self.base = cage
         """The cage before the cut."""
-        self.cage = cage
-        """The cage as it is now."""
-        self.plane = clear_plane(BladePlane.of(blade), cage.vertices, cage.length_tolerance)
-        """The plane of the cut, moved off the cage's vertices."""
-        self.wall = len(cage.walls)
-        """Number of the cut's wall in the walls of the cage, once it has begun to open."""
         self.depth = 0.0
-        """Depth to which the cut was advanced [m]."""
-        self.section = Section(cage.mesh, self.plane)
-        self._numbering = Numbering(self.section)
-        self._reached_at = np.sort(self.section.node_coordinates[:, 1])
-        self.front = self._front_at(0.0)
+        """Depth to which the cut was advanced, along all its turns [m]."""
+        self._identity = object()
+        self._blade = blade
+        plane = clear_plane(BladePlane.of(blade), cage.vertices, cage.length_tolerance)
+        self._begin((), Strip(cage, plane, window=blade.window), 0.0)
+
+    def _begin(self, before: tuple[tuple[Strip, float], ...], strip: Strip, depth: float) -> None:
+        self._strips: tuple[tuple[Strip, float], ...] = (*before, (strip, depth))
+        self._state = strip.start
+
+    @property
+    def _strip(self) -> Strip:
+        return self._strips[-1][0]
+
+    @property
+    def cage(self) -> Cage:
+        """The cage as it is now."""
+        return self._state.cage
+
+    @property
+    def hinged(self) -> bool:
+        """Whether the present plane begins at ``s = 0``, at the front of an earlier part of the cut."""
+        return self._strip.hinged
+
+    @property
+    def plane(self) -> BladePlane:
+        """The plane in which the blade moves, moved off the cage's vertices."""
+        return self._strip.plane
+
+    @property
+    def wall(self) -> int:
+        """Number of the present plane's wall in the walls of the cage, once it has begun to open."""
+        return self._strip.wall
+
+    @property
+    def section(self) -> Section:
+        """The present plane's section."""
+        return self._strip.section
+
+    @property
+    def front(self) -> float:
         """Coordinate s of the blade in the plane [m]."""
-        self._half_edge_face = cage.mesh.face
+        return self._state.front
 
     @property
     def length(self) -> float:
         """Depth at which the cut is complete, 0 if the blade misses the cage [m]."""
-        return float(self._reached_at[-1] - self._reached_at[0]) if len(self._reached_at) else 0.0
+        return self._strips[-1][1] + self._strip.length
 
     @property
     def complete(self) -> bool:
         """Whether nothing is left to cut."""
-        return len(self._reached_at) == 0 or self.front > float(self._reached_at[-1])
+        return self._strip.is_complete(self.front)
 
     def advance(self, to: float) -> CageEdit:
         """Move the blade on.
@@ -78,140 +124,141 @@ class Cut:
             TypeError: If the depth is not a number.
             ValueError: If the depth is not a number's value, or less than the depth now.
         """
-        try:
-            depth = float(to)
-        except (TypeError, ValueError):
-            raise TypeError(f"the depth of a cut must be a number, got {to!r}") from None
-        if np.isnan(depth):
-            raise ValueError("the depth of a cut must be a number, got nan")
+        depth = _as_depth(to)
         if depth < self.depth:
             raise ValueError(f"a cut never goes back: it has reached depth {self.depth:g}, asked for {depth:g}")
-        before, front_before = self.cage, self.front
-        front = self._front_at(depth)
-        self.depth, self.front = depth, front
-        if front == front_before or len(self._reached_at) == 0:
-            return self._empty_edit()
-        opening = Opening(self.section, self._numbering, front)
-        region = Region(self.section, front, front_before)
-        if len(opening.tip_chords) == 0 and not region.reached.any():
-            return self._empty_edit()
-        polygons = region.polygons()
-        self.cage = open_cage(self.base, opening, self.plane)
-        created, moved, source = self._changed_vertices(before, opening, region)
-        self._half_edge_face = opening.half_edge_face
-        triangles = [np.array(loop)[triangulate(region.coordinates[loop])] for loop in polygons]
-        return CageEdit(
-            before=before,
-            cage=self.cage,
-            wall=self.wall,
-            plane=self.plane,
-            front=front,
-            depth=depth,
-            complete=self.complete,
-            swept=tuple(region.position[loop] for loop in polygons),
-            swept_triangles=region.position[np.concatenate(triangles)] if triangles else np.zeros((0, 3, 3)),
-            created=created,
-            moved=moved,
-            source_faces=source,
-        )
+        self._state, edit = self._strip.advance(self._state, depth - self._strips[-1][1], depth)
+        self.depth = depth
+        return edit
 
-    def _empty_edit(self) -> CageEdit:
-        none = np.zeros(0, dtype=np.int64)
-        return CageEdit(
-            before=self.cage,
-            cage=self.cage,
-            wall=self.wall,
-            plane=self.plane,
-            front=self.front,
-            depth=self.depth,
-            complete=self.complete,
-            swept=(),
-            swept_triangles=np.zeros((0, 3, 3)),
-            created=none,
-            moved=none,
-            source_faces=none,
-        )
+    def turn(self, direction: np.ndarray) -> None:
+        """Turn the blade about its present front line; further steps open a further wall from there.
 
-    def _front_at(self, depth: float) -> float:
-        """Coordinate of the front, moved on by the tolerance where it would pass too close to a node."""
-        nodes, tolerance = self._reached_at, self.base.length_tolerance
-        if len(nodes) == 0:
-            return 0.0
-        if depth <= 0.0:
-            return float(nodes[0]) - tolerance
-        front = min(float(nodes[0]) + depth, float(nodes[-1]) + tolerance)
-        while True:
-            last = int(np.searchsorted(nodes, front + tolerance)) - 1
-            if last < 0 or nodes[last] <= front - tolerance or nodes[last] + tolerance <= front:
-                return front
-            front = float(nodes[last]) + tolerance
+        Args:
+            direction: Direction in which the blade moves from now on, of any length, not along the edge, shape (3,).
 
-    def _changed_vertices(
-        self, before: Cage, opening: Opening, region: Region
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Created and moved vertices, and faces of the cage before on which they are now."""
-        section, numbering = self.section, self._numbering
-        half_edge = np.full(self.cage.vertex_count, -1)
-        fresh = region.reached
-        half_edge[numbering.plus[fresh]] = half_edge[numbering.minus[fresh]] = section.node_half_edge[fresh]
-        chords = opening.tip_chords
-        ahead = np.where(opening.region.swept[section.chord_node[chords, 0]], 1, 0)
-        half_edge[numbering.tip[chords]] = section.half_edge[section.chord_slot[chords, ahead]]
-        created = np.arange(before.vertex_count, self.cage.vertex_count)
-        moved = np.flatnonzero((before.vertices != self.cage.vertices[: before.vertex_count]).any(axis=1))
-        return created, moved, self._half_edge_face[half_edge[np.concatenate([created, moved])]]
+        Raises:
+            TypeError: If the direction is not three numbers.
+            ValueError: If the direction is not finite, zero, along the edge or back into the cut, or the cut is
+                complete. Nothing has changed then.
+        """
+        if self.complete:
+            raise ValueError("the cut is complete: there is no front to turn about; begin a new cut")
+        plane = self._front_plane()
+        blade = Blade(plane.origin, plane.edge, direction)
+        if np.dot(_across(blade.direction, plane.edge), _across(plane.direction, plane.edge)) < _LEAST_TURN_COSINE:
+            raise ValueError("the blade would turn back into its own cut; turn it by less than 170 degrees")
+        self._go_on(self.cage, BladePlane.of(blade))
+
+    def resume(self, cage: Cage) -> None:
+        """Go on in a cage that other cuts have changed since the last step.
+
+        Further steps open a further wall, in the same plane as far as the tolerance allows.
+
+        Args:
+            cage: The cage as it is now, made by other cuts from this cut's.
+
+        Raises:
+            ValueError: If the cage is not one that came of this cut's. Nothing has changed then.
+        """
+        if cage.walls[: len(self.cage.walls)] != self.cage.walls:
+            raise ValueError("the cage did not come of this cut's: it lacks some of its walls; begin a new cut")
+        if self.complete:
+            self._state = StripState(cage, self.front, self._state.half_edge_face)
+        elif not (self._is_open or self.hinged):
+            plane = clear_plane(BladePlane.of(self._blade), cage.vertices, cage.length_tolerance)
+            self._begin((), Strip(cage, plane, window=self._blade.window), 0.0)
+        else:
+            self._go_on(cage, self._front_plane())
+
+    @property
+    def _is_open(self) -> bool:
+        """Whether the present plane's wall has begun to open."""
+        return self.cage is not self._strip.base
+
+    def _front_plane(self) -> BladePlane:
+        """The present plane with its origin at the front."""
+        return self.plane.at(max(self.front, 0.0) if self.hinged else self.front)
+
+    def _go_on(self, cage: Cage, plane: BladePlane) -> None:
+        """Begin a strip at the present front, in place of one that was begun here and not opened."""
+        if self._blade.window is not None:
+            raise ValueError(
+                "a knife of finite width, or one that starts inside, neither turns nor goes on after another cut; "
+                "begin a new cut"
+            )
+        strip, begun = self._strips[-1]
+        wall = strip.wall if self._is_open else strip.hinge_wall
+        hinge = _find_hinge(cage, wall, self._front_plane())
+        others = np.delete(cage.vertices, hinge.vertices, axis=0)
+        plane = clear_turn(plane, others, cage.length_tolerance)
+        replaced = self.hinged and not self._is_open and begun == self.depth
+        strips = self._strips[:-1] if replaced else self._strips
+        self._begin(strips, Strip(cage, plane, first=0.0, hinge=hinge, hinge_wall=wall), self.depth)
+
+    def snapshot(self) -> CutSnapshot:
+        """Remember where the cut is, for :meth:`rewind`; nothing is copied."""
+        return CutSnapshot(self._identity, self._strips, self.depth, self._state)
+
+    def rewind(self, to: float | CutSnapshot = 0.0) -> Cage:
+        """Take the blade back and the cut with it: a cut is a function of its depth, so nothing of it stays.
+
+        What other cuts did to the cage since is taken back too.
+
+        Args:
+            to: A snapshot of this cut, whose very cage comes back, or a depth, of which an equal cage is made [m].
+
+        Returns:
+            The cage, the same to the last bit as when the cut had been there on its way.
+
+        Raises:
+            TypeError: If the depth is not a number.
+            ValueError: If the depth is not a number's value, negative or beyond the depth now, or the snapshot is of
+                another cut. Nothing has changed then.
+        """
+        if isinstance(to, CutSnapshot):
+            if to.identity is not self._identity:
+                raise ValueError("the snapshot is of another cut; rewind that one, or take a snapshot of this one")
+            self._strips, self.depth, self._state = to.strips, to.depth, to.state
+            return self.cage
+        depth = _as_depth(to)
+        if not 0.0 <= depth <= self.depth:
+            raise ValueError(f"a cut is rewound to a depth between 0 and {self.depth:g}, where it is, not to {depth:g}")
+        kept = [item for item in self._strips if item[1] <= depth]
+        self._strips = tuple(kept)
+        strip, begun = kept[-1]
+        self._state, self.depth = strip.start, begun
+        if depth > begun:
+            self.advance(to=depth)
+        return self.cage
 
 
-def clear_plane(plane: BladePlane, points: np.ndarray, tolerance: float) -> BladePlane:
-    """The plane moved, by as little as can be, so that no point is within the tolerance of it.
-
-    Args:
-        plane: The plane.
-        points: Points to keep off, shape (point_count, 3) [m].
-        tolerance: Distance to keep [m].
-    """
-    distance = np.sort(plane.distance(points))
-    if len(distance) == 0 or np.abs(distance).min() > tolerance:
-        return plane
-    margin = 1.5 * tolerance
-    lowest = np.concatenate([[-np.inf], distance + margin])
-    highest = np.concatenate([distance - margin, [np.inf]])
-    nearest = np.clip(0.0, lowest, highest)[lowest <= highest]
-    return plane.shifted(float(nearest[np.argmin(np.abs(nearest))]))
+def _find_hinge(cage: Cage, wall: int | None, plane: BladePlane) -> Hinge:
+    """Where both sides of a wall meet on the line ``s = 0`` of a plane."""
+    mesh, tolerance = cage.mesh, 0.5 * cage.length_tolerance
+    if wall is None:
+        return Hinge(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64))
+    key = cage.face_key[mesh.face]
+    on_front = np.abs(plane.coordinates(cage.vertices)[:, 1]) <= tolerance
+    on_front &= np.abs(plane.distance(cage.vertices)) <= tolerance
+    for side in (0, 1):
+        used = np.zeros(cage.vertex_count, dtype=bool)
+        used[mesh.face_vertex[key == 2 * wall + side]] = True
+        on_front &= used
+    return Hinge.of(mesh, cage.face_key, wall, on_front)
 
 
-def open_cage(base: Cage, opening: Opening, plane: BladePlane) -> Cage:
-    """The cage that a section opened up to a front leaves.
+def _across(direction: np.ndarray, edge: np.ndarray) -> np.ndarray:
+    """The part of a direction across an edge, of unit length."""
+    across = direction - (direction @ edge) * edge
+    return across / np.linalg.norm(across)
 
-    Args:
-        base: The cage before the cut.
-        opening: The section opened.
-        plane: The plane of the cut.
-    """
-    mesh = base.mesh
-    minus, plus = opening.side_vertices()
-    sides: list[list[int]] = []
-    for loop in opening.region.polygons():
-        sides += [minus[loop].tolist(), plus[loop[::-1]].tolist()]
-    appended = opening.extra_loops + sides
-    size = np.concatenate([mesh.face_size, [len(loop) for loop in appended]]).astype(np.int64)
-    size[opening.faces] = [len(loop) for loop in opening.first_loops]
-    face_start = np.concatenate([[0], np.cumsum(size)])
-    face_vertex = np.empty(face_start[-1], dtype=np.int64)
-    kept = np.ones(mesh.face_count, dtype=bool)
-    kept[opening.faces] = False
-    half = np.flatnonzero(kept[mesh.face])
-    owner = mesh.face[half]
-    face_vertex[half - mesh.face_start[owner] + face_start[owner]] = mesh.face_vertex[half]
-    for face, loop in zip(opening.faces.tolist(), opening.first_loops, strict=True):
-        face_vertex[face_start[face] : face_start[face + 1]] = loop
-    if appended:
-        face_vertex[face_start[mesh.face_count] :] = np.concatenate(appended)
-    wall, extra = len(base.walls), opening.extra_face
-    return Cage._assembled(
-        base,
-        PolygonMesh(np.concatenate([mesh.vertices, opening.created_positions()]), face_start, face_vertex),
-        (*base.walls, plane.wall()),
-        np.concatenate([base.face_wall, base.face_wall[extra], np.full(len(sides), wall)]).astype(np.int64),
-        np.concatenate([base.face_side, base.face_side[extra], np.tile([0, 1], len(sides) // 2)]).astype(np.int64),
-    )
+
+def _as_depth(to: float) -> float:
+    try:
+        depth = float(to)
+    except (TypeError, ValueError):
+        raise TypeError(f"the depth of a cut must be a number, got {to!r}") from None
+    if np.isnan(depth):
+        raise ValueError("the depth of a cut must be a number, got nan")
+    return depth

@@ -15,6 +15,7 @@ import numpy as np
 
 from .blade import BladePlane
 from .cage import Cage
+from .pieces import CagePiece, component_piece, pieces_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,12 +45,27 @@ class CageEdit:
     moved: np.ndarray
     """Ids of the vertices that have moved, shape (moved_count,)."""
     source_faces: np.ndarray
-    """For the created, then the moved vertices: a face of ``before`` that holds their position, shape (count,)."""
+    """For the created, then the moved vertices: a face of ``before`` that holds their position, shape (count,).
+
+    It is -1 for those inside the body, at the corners of the front of a knife of finite width.
+    """
 
     @property
     def is_empty(self) -> bool:
         """Whether the step changed nothing."""
         return self.cage is self.before
+
+    @cached_property
+    def components(self) -> tuple[CagePiece, ...]:
+        """The pieces that the cage is in after the step, with what belongs to each."""
+        return pieces_of(self.cage)
+
+    @cached_property
+    def separated(self) -> bool:
+        """Whether a piece came off in this step."""
+        if self.is_empty or self.before.component_count == self.cage.component_count == 1:
+            return False
+        return int(component_piece(self.cage).max()) > int(component_piece(self.before).max())
 
     @cached_property
     def _same(self) -> np.ndarray:

@@ -25,22 +25,34 @@ class Numbering:
         count = section.node_count
         touching: list[list[int]] = [[] for _ in range(count)]
         first = section.chord_ends[:, 0].tolist()
-        for chord, (start, end) in enumerate(section.chord_node.tolist()):
+        tipped = np.flatnonzero(section.tipped)
+        for chord, (start, end) in zip(tipped.tolist(), section.chord_node[tipped].tolist(), strict=True):
             touching[start].append(chord)
             touching[end].append(chord)
         base = section.mesh.vertex_count
+        existing, pinned = section.node_vertex.tolist(), section.node_pinned.tolist()
+        swells, bulges = section.chord_swells.tolist(), section.chord_bulges.tolist()
         plus, minus, tip = [0] * count, [0] * count, [0] * section.chord_count
+        middle = {}
         total = np.zeros(count + 1, dtype=np.int64)
         created = base
         for place, node in enumerate(np.argsort(section.node_rank).tolist()):
-            arriving = [tip[chord] for chord in touching[node] if first[chord] != node]
+            arriving = [chord for chord in touching[node] if first[chord] != node]
             leaving = [chord for chord in touching[node] if first[chord] == node]
-            missing = max(0, len(leaving) + 2 - len(arriving))
-            ids = arriving + list(range(created, created + missing))
+            swelling = [chord for chord in leaving if swells[chord]] + [chord for chord in arriving if bulges[chord]]
+            own = 2 if existing[node] < 0 and not pinned[node] else 1
+            ids = [tip[chord] for chord in arriving]
+            missing = max(0, len(leaving) + own + 2 * len(swelling) - len(ids))
+            ids += range(created, created + missing)
             created += missing
-            for k, chord in enumerate(leaving):
-                tip[chord] = ids[k]
-            plus[node], minus[node] = ids[len(leaving)], ids[len(leaving) + 1]
+            for chord in leaving:
+                tip[chord] = ids.pop(0)
+            minus[node] = ids.pop(own - 1)
+            plus[node] = existing[node] if existing[node] >= 0 else (minus[node] if pinned[node] else ids.pop(0))
+            for chord in swelling:
+                middle[chord] = (ids.pop(0), ids.pop(0))
+            for left in ids:
+                middle[next(c for c in arriving if section.chord_face[c] < 0 and c not in middle)] = (left, left)
             total[place + 1] = created - base
         self.plus = np.array(plus, dtype=np.int64)
         """Vertex on the positive side of each opened node, shape (node_count,)."""
@@ -50,3 +62,9 @@ class Numbering:
         """Vertex at the tip in each half-opened chord, shape (chord_count,)."""
         self.created = total
         """Number of ids in use once the front has reached so many nodes, shape (node_count + 1,)."""
+        self.middle_plus = np.full(section.chord_count, -1)
+        """Vertex on the positive side between a chord's ends, -1 where there is none, shape (chord_count,)."""
+        self.middle_minus = np.full(section.chord_count, -1)
+        """Vertex on the negative side between a chord's ends, shape (chord_count,)."""
+        for chord, (above, below) in middle.items():
+            self.middle_plus[chord], self.middle_minus[chord] = above, below

@@ -11,9 +11,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from .bridge import bridge_holes, contains_point
 from .numbering import Numbering
 from .region import Region
 from .section import Section
+
+_SHUT, _OPEN, _PINNED = 0, 1, 2
 
 
 class Opening:
@@ -29,17 +32,18 @@ class Opening:
         """
         self.section = section
         self.numbering = numbering
-        self.region = Region(section, front)
+        self.region = Region(section, front, middles=np.flatnonzero(numbering.middle_plus >= 0))
         swept = self.region.swept
         self.created_count = int(numbering.created[np.count_nonzero(swept)])
         """Number of vertices beyond the mesh's own."""
         self.tip_chords = self.region.upper_chords
         """Chords that end in a tip, shape (tip_count,)."""
         self._open_ends = swept[section.chord_node]
+        self._positions: np.ndarray | None = None
         self._walk_faces()
 
     def created_values(self, at_nodes: np.ndarray, at_tips: np.ndarray) -> np.ndarray:
-        """Values of the created vertices from those at nodes and at tips.
+        """Values of the created vertices from those at nodes and at tips, halfway between them in the middle of chords.
 
         Args:
             at_nodes: Values at all nodes, shape (node_count, ...).
@@ -48,11 +52,20 @@ class Opening:
         Returns:
             Values in the order of their ids, shape (created_count, ...).
         """
-        first, swept = self.section.mesh.vertex_count, self.region.swept
+        section, numbering = self.section, self.numbering
+        first, swept = section.mesh.vertex_count, self.region.swept
         values = np.zeros((self.created_count, *at_nodes.shape[1:]), dtype=at_nodes.dtype)
-        values[self.numbering.plus[swept] - first] = at_nodes[swept]
-        values[self.numbering.minus[swept] - first] = at_nodes[swept]
-        values[self.numbering.tip[self.tip_chords] - first] = at_tips
+        opened = swept & (section.node_vertex < 0)
+        values[numbering.plus[opened] - first] = at_nodes[opened]
+        values[numbering.minus[swept] - first] = at_nodes[swept]
+        values[numbering.tip[self.tip_chords] - first] = at_tips
+        middles = self.region.middles
+        if len(middles):
+            low, high = section.chord_ends[middles].T
+            end = np.where(swept[high], numbering.plus[high], numbering.tip[middles]) - first
+            halfway = (0.5 * (values[numbering.plus[low] - first] + values[end])).astype(values.dtype)
+            values[numbering.middle_plus[middles] - first] = halfway
+            values[numbering.middle_minus[middles] - first] = halfway
         return values
 
     def created_positions(self) -> np.ndarray:
@@ -62,40 +75,65 @@ class Opening:
 
     def side_vertices(self) -> tuple[np.ndarray, np.ndarray]:
         """Vertices of the region's labels on the negative and on the positive side, shapes (label_count,)."""
-        tip = self.numbering.tip
-        return np.concatenate([self.numbering.minus, tip]), np.concatenate([self.numbering.plus, tip])
+        numbering = self.numbering
+        return (
+            np.concatenate([numbering.minus, numbering.tip, numbering.tip, numbering.middle_minus]),
+            np.concatenate([numbering.plus, numbering.tip, numbering.tip, numbering.middle_plus]),
+        )
 
     def _hops(self) -> dict[int, tuple[tuple[int, ...], int]]:
-        """For each half-edge with an open crossing: vertices to insert and the half-edge with which to go on."""
-        section, mesh = self.section, self.section.mesh
+        """For each half-edge with an open crossing: vertices to insert and the half-edge with which to go on.
+
+        Slits that meet no edge of their face are kept in ``self._slits``.
+        """
+        section = self.section
         touched = np.flatnonzero(self._open_ends.any(axis=1))
-        half = section.half_edge[section.chord_slot[touched]]
+        touched = touched[section.chord_face[touched] >= 0]
+        slots = section.chord_slot[touched]
         node = section.chord_node[touched]
+        pinned = section.node_pinned[node]
         plus, minus = self.numbering.plus[node].tolist(), self.numbering.minus[node].tolist()
-        columns = (half.tolist(), mesh.next[half].tolist(), plus, minus)
+        columns = (section.arrive[slots].tolist(), section.leave[slots].tolist(), plus, minus)
         tips = self.numbering.tip[touched].tolist()
+        state = np.where(self._open_ends[touched], np.where(pinned, _PINNED, _OPEN), _SHUT).tolist()
+        middles = set(self.region.middles.tolist())
         hops: dict[int, tuple[tuple[int, ...], int]] = {}
-        for h, after, p, m, tip, is_open in zip(*columns, tips, self._open_ends[touched].tolist(), strict=True):
-            if is_open[0] and is_open[1]:
-                hops[h[0]] = ((p[0], p[1]), after[1])
-                hops[h[1]] = ((m[1], m[0]), after[0])
-            elif is_open[0]:
-                hops[h[0]] = ((p[0], tip, m[0]), after[0])
+        self._slits: list[tuple[int, list[int]]] = []
+        for chord, h, after, p, m, tip, ends in zip(touched.tolist(), *columns, tips, state, strict=True):
+            above, below = (), ()
+            if chord in middles:
+                above, below = (int(self.numbering.middle_plus[chord]),), (int(self.numbering.middle_minus[chord]),)
+            if ends[0] == ends[1] == _OPEN:
+                hops[h[0]] = ((p[0], *above, p[1]), after[1])
+                hops[h[1]] = ((m[1], *below, m[0]), after[0])
+                continue
+            last = [p[k] if ends[k] == _PINNED else tip for k in (0, 1)]
+            if ends[0] == _OPEN:
+                hops[h[0]] = ((p[0], *above, last[1], *below, m[0]), after[0])
+            elif ends[1] == _OPEN:
+                hops[h[1]] = ((m[1], *below, last[0], *above, p[1]), after[1])
             else:
-                hops[h[1]] = ((m[1], tip, p[1]), after[1])
+                self._slits.append((chord, [last[0], *above, last[1], *below]))
         return hops
 
     def _walk_faces(self) -> None:
         """Walk the loops of the touched faces, the first of each keeping the face's place."""
         section, mesh = self.section, self.section.mesh
-        self.faces = np.unique(section.chord_face[self._open_ends.any(axis=1)])
+        self.face_vertex = mesh.face_vertex
+        """Vertex at which each half-edge of the mesh starts, after the opening, shape (half_edge_count,)."""
+        parted = self.region.swept[section.parted_node]
+        if parted.any():
+            self.face_vertex = mesh.face_vertex.copy()
+            self.face_vertex[section.parted[parted]] = self.numbering.minus[section.parted_node[parted]]
+        self.faces = np.unique(section.chord_face[self._open_ends.any(axis=1) & (section.chord_face >= 0)])
         """Faces of the mesh that are slit or split, ascending, shape (touched_count,)."""
         hops = self._hops()
         self.first_loops: list[list[int]] = []
         """What stays in the place of each touched face."""
         extra: dict[int, list[list[int]]] = {}
         place: dict[int, tuple[int, int]] = {}
-        flat, following = mesh.face_vertex, mesh.next
+        flat, following = self.face_vertex, mesh.next
+        hinge = set(section.hinge_corner.tolist()) if hops else set()
         for face, begin, end in zip(
             self.faces.tolist(),
             mesh.face_start[self.faces].tolist(),
@@ -105,7 +143,7 @@ class Opening:
             vertex, after = flat[begin:end].tolist(), following[begin:end].tolist()
             loops: list[list[int]] = []
             for start in range(begin, end):
-                if start in place:
+                if start in place or start in hinge:
                     continue
                 loop, h = [], start
                 while h not in place:
@@ -120,12 +158,52 @@ class Opening:
                 loops.append(loop)
             self.first_loops.append(loops[0])
             extra[face] = loops[1:]
+        for h, corner in zip(section.hinge_arrive.tolist(), section.hinge_corner.tolist(), strict=True):
+            if h in place:
+                place[corner] = place[h]
         self._place_extra(extra, place)
+        for chord, slit in self._slits:
+            self._join_slit(int(section.chord_face[chord]), slit)
+
+    def _join_slit(self, face: int, slit: list[int]) -> None:
+        """Bridge a slit that meets no edge of its face to the loop around it."""
+        mesh = self.section.mesh
+        row = int(np.searchsorted(self.faces, face))
+        extra = [i for i, owner in enumerate(self.extra_face) if owner == face]
+        loops = [self.first_loops[row], *(self.extra_loops[i] for i in extra)]
+        normal = mesh.face_area_vector[face]
+        first = mesh.vertices[mesh.face_vertex[mesh.face_start[face]]]
+        axis = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
+        axis /= np.linalg.norm(axis)
+        axes = np.stack([axis, np.cross(normal / np.linalg.norm(normal), axis)])
+        flat = [(self._position_of(loop) - first) @ axes.T for loop in loops]
+        hole = (self._position_of(slit) - first) @ axes.T
+        inside = [k for k, points in enumerate(flat) if contains_point(points, hole[1])]
+        k = inside[0] if inside else 0
+        size = len(loops[k])
+        labels = loops[k] + slit
+        joined = bridge_holes(list(range(size)), [list(range(size, len(labels)))], np.concatenate([flat[k], hole]))
+        loop = [labels[i] for i in joined]
+        if k == 0:
+            self.first_loops[row] = loop
+        else:
+            self.extra_loops[extra[k - 1]] = loop
+
+    def _position_of(self, vertices: list[int]) -> np.ndarray:
+        old = self.section.mesh.vertices
+        ids = np.array(vertices)
+        if self._positions is None:
+            self._positions = self.created_positions()
+        below = ids < len(old)
+        positions = np.empty((len(ids), 3))
+        positions[below] = old[ids[below]]
+        positions[~below] = self._positions[ids[~below] - len(old)]
+        return positions
 
     def _place_extra(self, extra: dict[int, list[list[int]]], place: dict[int, tuple[int, int]]) -> None:
         """Order the further loops by when the chord that split them off was completed, so that their places last."""
         section, mesh = self.section, self.section.mesh
-        complete = np.flatnonzero(self._open_ends.all(axis=1))
+        complete = np.flatnonzero(self._open_ends.all(axis=1) & (section.chord_face >= 0))
         done = section.node_rank[section.chord_ends[complete, 1]]
         complete = complete[np.argsort(done, kind="stable")]
         taken = dict.fromkeys(extra, 0)

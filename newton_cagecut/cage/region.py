@@ -14,21 +14,24 @@ from .bridge import bridge_holes, contains_point, signed_area
 from .pairing import alternate
 from .section import Section
 
+_FLAT = 1e-13
+
 
 class Region:
     """The part of a section with ``lower < s <= upper``.
 
     Labels: node ``i`` is ``i``; where chord ``c`` crosses the upper front is ``node_count + c``; where it crosses the
-    lower front is ``node_count + chord_count + c``.
+    lower front is ``node_count + chord_count + c``; a vertex between its ends is ``node_count + 2 * chord_count + c``.
     """
 
-    def __init__(self, section: Section, upper: float, lower: float = -np.inf):
+    def __init__(self, section: Section, upper: float, lower: float = -np.inf, *, middles: np.ndarray | None = None):
         """Clip a section.
 
         Args:
             section: The section.
             upper: Coordinate s of the front [m].
             lower: Coordinate s of an earlier front [m].
+            middles: Chords that may have a vertex between their ends; None for none.
         """
         self._section = section
         s = section.node_coordinates[:, 1]
@@ -43,15 +46,29 @@ class Region:
         crossing = self._done[section.chord_node]
         self._lower_chords = np.flatnonzero(crossing[:, 0] != crossing[:, 1])
         nodes, chords = section.node_count, section.chord_count
-        self.position = np.full((nodes + 2 * chords, 3), np.nan)
+        self.position = np.full((nodes + 3 * chords, 3), np.nan)
         """Position of each label in use, shape (label_count, 3) [m]."""
-        self.coordinates = np.full((nodes + 2 * chords, 2), np.nan)
+        self.coordinates = np.full((nodes + 3 * chords, 2), np.nan)
         """Coordinates (a, s) of each label in use, shape (label_count, 2) [m]."""
         self.position[:nodes] = section.node_position
         self.coordinates[:nodes] = section.node_coordinates
         for front, shift, which in ((upper, nodes, self.upper_chords), (lower, nodes + chords, self._lower_chords)):
             if len(which):
                 self.position[shift + which], self.coordinates[shift + which] = section.chord_points(front, which)
+
+        self.middles = self._place_middles(np.zeros(0, dtype=np.int64) if middles is None else middles)
+        """Chords that have a vertex between their ends, shape (middle_count,)."""
+
+    def _place_middles(self, chords: np.ndarray) -> np.ndarray:
+        """Put vertices halfway along what is open of chords: of slits from their begin on, of borders at their end."""
+        section, nodes, count = self._section, self._section.node_count, self._section.chord_count
+        low, high = section.chord_ends[chords].T
+        chords = chords[np.where(section.chord_swells[chords], self.swept[low], self.swept[high])]
+        low, high = section.chord_ends[chords].T
+        end = np.where(self.swept[high], high, nodes + chords)
+        for values in (self.position, self.coordinates):
+            values[nodes + 2 * count + chords] = 0.5 * (values[low] + values[end])
+        return chords
 
     def polygons(self) -> list[list[int]]:
         """The region as polygons without holes, counterclockwise about the plane's normal, as loops of labels."""
@@ -60,7 +77,8 @@ class Region:
             if len(loop) < 3:
                 continue
             area = signed_area(self.coordinates[loop])
-            (outer if area > 0.0 else holes).append((loop, group, abs(area)))
+            flat = _FLAT * float(np.ptp(self.coordinates[loop], axis=0).max()) ** 2
+            (outer if area > flat else holes).append((loop, group, abs(area)))
         inside: list[list[list[int]]] = [[] for _ in outer]
         for loop, group, _ in holes:
             owner = self._owner(loop, group, outer)
@@ -91,6 +109,7 @@ class Region:
         bottom = self._front_jumps(section.node_count + section.chord_count, self._lower_chords, self._done)
         state = np.where(self.reached, 0, np.where(self._done, -1, 1)).tolist()
         todo = active.tolist()
+        middles, middle_shift = set(self.middles.tolist()), section.node_count + 2 * section.chord_count
         start, end, following = start.tolist(), end.tolist(), section.chord_next.tolist()
         shift = {1: section.node_count, -1: section.node_count + section.chord_count}
         loops = []
@@ -100,6 +119,8 @@ class Region:
                 todo[chord] = False
                 side = state[start[chord]]
                 loop.append(shift[side] + chord if side else start[chord])
+                if chord in middles:
+                    loop.append(middle_shift + chord)
                 side = state[end[chord]]
                 if side:
                     loop.append(shift[side] + chord)

@@ -5,6 +5,7 @@
 
 from .coordinates import HarmonicCoordinates
 from .domain import Domain
+from .snapshot import CoordinatesSnapshot
 from .stats import UpdateStats
 
-__all__ = ["Domain", "HarmonicCoordinates", "UpdateStats"]
+__all__ = ["CoordinatesSnapshot", "Domain", "HarmonicCoordinates", "UpdateStats"]

@@ -16,6 +16,7 @@ from .domain import Domain, DomainChange
 from .landing import LANDING_DTYPES
 from .launch import launch
 from .options import WalkOptions
+from .snapshot import CoordinatesSnapshot
 from .stats import UpdateStats
 from .walker import Walker
 
@@ -190,6 +191,28 @@ class HarmonicCoordinates:
         self._walker.group_points()
         self._walker.run_all(stats)
         return stats
+
+    def snapshot(self) -> CoordinatesSnapshot:
+        """Copy all that edits change, for :meth:`restore`; as many bytes as the cache and the weights.
+
+        Raises:
+            ValueError: There is no walk cache.
+        """
+        return CoordinatesSnapshot.of(self._cache_of("snapshot"), self.domain)
+
+    def restore(self, snapshot: CoordinatesSnapshot) -> None:
+        """Undo every edit since a snapshot: cage, walls, walks and weights are the same again, bit for bit.
+
+        Args:
+            snapshot: A snapshot of these coordinates; it can be restored any number of times.
+
+        Raises:
+            ValueError: The snapshot is of other coordinates. Nothing has changed then.
+        """
+        if snapshot.owner is not self._walker:
+            raise ValueError("restore: the snapshot is of other coordinates; restore those, or take one of these")
+        snapshot.restore()
+        self._cage = snapshot.cage
 
     def set_points(self, indices: np.ndarray, points: np.ndarray, point_keys: np.ndarray | None = None) -> UpdateStats:
         """Move points, or add points at the end, and walk for them alone.

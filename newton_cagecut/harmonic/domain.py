@@ -12,7 +12,7 @@ import warp as wp
 
 from ..cage import Cage, CageEdit
 from .bounds import PieceBounds, bound_pieces
-from .faces import NESTED, build_face_tables
+from .faces import NESTED, FaceTables, build_face_tables
 from .frame import UnitFrame
 from .grid import CandidateGrid
 from .launch import launch
@@ -32,6 +32,17 @@ class DomainChange:
     pieces: PieceBounds
     changed_keys: np.ndarray
     regrouped: bool
+
+
+@dataclass(frozen=True, eq=False)
+class DomainState:
+    """A domain at one time; made by ``Domain.state``."""
+
+    cage: Cage
+    walls: tuple
+    grid: tuple
+    faces: FaceTables
+    last: tuple[CageEdit, DomainChange] | None
 
 
 class Domain:
@@ -101,6 +112,20 @@ class Domain:
         self.cage = edit.cage
         self._last = (edit, change)
         return change
+
+    def state(self) -> DomainState:
+        """What ``restore`` needs to come back to the present."""
+        return DomainState(self.cage, self.walls.state(), self.grid.state(), self.faces, self._last)
+
+    def restore(self, state: DomainState) -> None:
+        """Come back to a state: later walls are forgotten.
+
+        Args:
+            state: A state of this domain.
+        """
+        self.cage, self.faces, self._last = state.cage, state.faces, state.last
+        self.walls.restore(state.walls)
+        self.grid.restore(state.grid)
 
     def _append(self, corners: np.ndarray, walls: np.ndarray, cage: Cage) -> None:
         normals = np.array([wall.normal for wall in cage.walls])[walls]

@@ -244,6 +244,15 @@ class CandidateGrid:
         launch(_fill_merged, cell_count, [self.walls.data, first_new, old, cells, self._nearest], device=device)
         self.cells = cells
 
+    def state(self) -> tuple:
+        """The grid as it is: merging replaces the cells, and writes to the distances, of which this has a copy."""
+        return self.cells, wp.clone(self._nearest)
+
+    def restore(self, state: tuple) -> None:
+        """Forget the walls that were merged since a state."""
+        self.cells = state[0]
+        wp.copy(self._nearest, state[1])
+
     def _build(self) -> None:
         device = self.walls.device
         half = self.walls.frame.half_extents

@@ -190,6 +190,14 @@ class Walls:
         self._upload()
         return range(first, self.triangle_count)
 
+    def state(self) -> tuple:
+        """The walls as they are; appending replaces what this refers to, and never writes to it."""
+        return self.triangle_count, self._rows, self.data
+
+    def restore(self, state: tuple) -> None:
+        """Forget the walls that were appended since a state."""
+        self.triangle_count, self._rows, self.data = state
+
     def _upload(self) -> None:
         data = WallTriangles()
         for name, rows in self._rows.items():

@@ -5,7 +5,8 @@
 
 from .builder import add_cage_body
 from .definition import Capacity
+from .pieces import BodyPiece
 from .report import CutReport
 from .solver import SolverCageCut
 
-__all__ = ["Capacity", "CutReport", "SolverCageCut", "add_cage_body"]
+__all__ = ["BodyPiece", "Capacity", "CutReport", "SolverCageCut", "add_cage_body"]

@@ -38,6 +38,11 @@ class BodyCut:
     def __init__(self, body: CageBody, blade: Blade) -> None:
         if not body.definition.cuttable:
             raise ValueError(f"{body.label} was added with cuttable=False; it keeps no walk cache to cut with")
+        if isinstance(blade, Blade) and blade.window is not None:
+            raise ValueError(
+                "surfaces cannot follow a knife of finite width or one that starts inside yet; cut bodies with a blade "
+                "without width and start"
+            )
         self.body = body
         self.cut = Cut(body.cage, blade)
         self._surface_cut = SurfaceCut(body.surface, self.cut.plane, self.cut.wall)
@@ -57,14 +62,25 @@ class BodyCut:
         """Whether nothing is left to cut."""
         return self.cut.complete
 
+    def turn(self, direction: np.ndarray) -> None:
+        """Turn the blade about its present front line, in the cage's rest frame; see ``Cut.turn``."""
+        cut, surface_cut = copy.copy(self.cut), copy.copy(self._surface_cut)
+        if cut.cage is not self.body.cage:
+            cut.resume(self.body.cage)
+            surface_cut.go_on(cut.plane, cut.wall, surface=self.body.surface, hinged=cut.hinged)
+        cut.turn(direction)
+        surface_cut.go_on(cut.plane, cut.wall, hinged=cut.hinged)
+        self.cut, self._surface_cut = cut, surface_cut
+
     def advance(self, to: float, states: Sequence[newton.State]) -> CutReport:
         """Advance the blade to a depth [m] and carry the body's data over, in the given states too."""
         body = self.body
-        if self.cut.cage is not body.cage:
-            raise ValueError(f"another cut has changed {body.label} since this one began; begin a new cut")
         seconds: dict[str, float] = {}
         clock = _Clock(seconds)
         cut, surface_cut = copy.copy(self.cut), copy.copy(self._surface_cut)
+        if cut.cage is not body.cage:
+            cut.resume(body.cage)
+            surface_cut.go_on(cut.plane, cut.wall, surface=body.surface, hinged=cut.hinged)
         edit = cut.advance(to=to)
         clock.lap("topology")
         surface_edit = surface_cut.advance(edit.front) if edit.cage is not edit.before else _no_change(body)
@@ -89,7 +105,7 @@ class BodyCut:
             depth=cut.depth,
             complete=cut.complete,
             components=edit.cage.component_count,
-            separated=edit.cage.component_count > edit.before.component_count,
+            separated=edit.separated,
             vertices_created=len(edit.created),
             points_created=len(surface_edit.created),
             stats=stats,

@@ -15,8 +15,10 @@ from ..cage import Blade
 from .body import CageBody
 from .body_cut import BodyCut
 from .builder import register_custom_attributes
+from .pieces import BodyPiece, body_pieces
 from .plan import PlanEntry, plan_of
 from .report import CutReport
+from .undo import BodySnapshot
 from .viewing import SurfaceViewer
 
 
@@ -135,6 +137,8 @@ class SolverCageCut(newton.solvers.SolverBase):
     ) -> CutReport:
         """Advance a cut: the model edit. A failed edit leaves model, states and weights as they were.
 
+        Cuts of one body may advance in turn; ``cut.turn(direction)`` bends one at its present front.
+
         Args:
             cut: The cut.
             by: Length to advance by, in the rest frame [m].
@@ -145,12 +149,35 @@ class SolverCageCut(newton.solvers.SolverBase):
             What was done.
 
         Raises:
-            ValueError: Neither or both of ``by`` and ``to`` are given, the cut would go back, another cut has changed
-                the body since this one began, or the result does not fit the reserved capacity.
+            ValueError: Neither or both of ``by`` and ``to`` are given, the cut would go back, or the result does not
+                fit the reserved capacity.
         """
         if (by is None) == (to is None):
             raise ValueError("advance_cut needs either a length to advance by or to=depth")
         return cut.advance(cut.depth + by if to is None else to, tuple(states))
+
+    def snapshot(
+        self, body: int | str = 0, *, states: Sequence[newton.State] = (), cuts: Sequence[BodyCut] = ()
+    ) -> BodySnapshot:
+        """Keep all that cuts of a body change, for :meth:`restore`; as many bytes as its walks and weights.
+
+        Args:
+            body: Index or label of the body.
+            states: States whose rows of the body are to be brought back too.
+            cuts: Cuts that are to go on from where they are; others must be begun anew after ``restore``.
+
+        Raises:
+            ValueError: There is no such body, or it was added with cuttable=False.
+        """
+        return BodySnapshot(self.body(body), tuple(states), tuple(cuts))
+
+    def restore(self, snapshot: BodySnapshot) -> None:
+        """Undo every cut since a snapshot: cage, weights, surface, masses and the states' rows are as they were.
+
+        Args:
+            snapshot: A snapshot of a body of this solver.
+        """
+        snapshot.restore()
 
     def surface(self, state: newton.State, body: int | str = 0) -> tuple[np.ndarray, np.ndarray]:
         """The surface of a body in a state.
@@ -160,6 +187,17 @@ class SolverCageCut(newton.solvers.SolverBase):
         """
         found = self.body(body)
         return found.surface_points(state).numpy().copy(), np.array(found.surface.triangles, dtype=np.int32)
+
+    def pieces(self, body: int | str = 0) -> tuple[BodyPiece, ...]:
+        """The pieces that a body is in: vertices, faces, surface points and triangles, volume and mass of each.
+
+        Args:
+            body: Index or label of the body.
+
+        Raises:
+            ValueError: There is no such body.
+        """
+        return body_pieces(self.body(body))
 
     def log(self, viewer: newton.viewer.ViewerBase, state: newton.State) -> None:
         """Show the surfaces in any Newton viewer, with the topology of this frame; caps have a colour of their own."""

@@ -7,11 +7,12 @@ Section 6.3 of the paper calls this the embedded mesh. Positions are in the rest
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
 
-from ..cage import PolygonMesh
+from ..cage import PolygonMesh, Wall
 from ..cage.winding import winding_numbers
 
 
@@ -24,6 +25,7 @@ class Surface:
         triangles: np.ndarray,
         *,
         uvs: np.ndarray | None = None,
+        normals: np.ndarray | None = None,
         triangle_cap: np.ndarray | None = None,
         point_key: np.ndarray | None = None,
     ):
@@ -33,6 +35,7 @@ class Surface:
             points: Rest positions, shape (point_count, 3) [m].
             triangles: Point ids, counterclockwise seen from outside, shape (triangle_count, 3).
             uvs: Texture coordinates of the points, shape (point_count, 2).
+            normals: Unit normals of the points, shape (point_count, 3).
             triangle_cap: Wall of the cut that each triangle caps, -1 for the original surface, shape (triangle_count,).
             point_key: ``2 * wall + side`` of the wall on which each point lies, -1 inside, shape (point_count,).
 
@@ -42,10 +45,10 @@ class Surface:
         """
         self.points = _as_floats(points, "points", 3)
         self.triangles = _as_triangles(triangles, len(self.points))
-        self.uvs = None if uvs is None else _as_floats(uvs, "uvs", 2)
-        if self.uvs is not None and len(self.uvs) != len(self.points):
-            raise ValueError(f"the surface has {len(self.points)} points but {len(self.uvs)} uvs; give each one")
+        self.uvs = _as_point_values(uvs, "uvs", 2, len(self.points))
+        self.normals = _as_point_values(normals, "normals", 3, len(self.points))
         self.triangle_cap = _as_labels(triangle_cap, "triangle_cap", len(self.triangles))
+        self.cap_side = np.zeros(len(self.triangles), dtype=np.int8)
         self.point_key = _as_labels(point_key, "point_key", len(self.points))
         self._freeze()
 
@@ -55,18 +58,21 @@ class Surface:
         points: np.ndarray,
         triangles: np.ndarray,
         uvs: np.ndarray | None,
+        normals: np.ndarray | None,
         triangle_cap: np.ndarray,
+        cap_side: np.ndarray,
         point_key: np.ndarray,
     ) -> Surface:
         """A surface that a cut made, taken as it is."""
         surface = cls.__new__(cls)
-        surface.points, surface.triangles, surface.uvs = points, triangles, uvs
-        surface.triangle_cap, surface.point_key = triangle_cap, point_key
+        surface.points, surface.triangles, surface.uvs, surface.normals = points, triangles, uvs, normals
+        surface.triangle_cap, surface.cap_side, surface.point_key = triangle_cap, cap_side, point_key
         surface._freeze()
         return surface
 
     def _freeze(self) -> None:
-        for array in (self.points, self.triangles, self.uvs, self.triangle_cap, self.point_key):
+        arrays = (self.points, self.triangles, self.uvs, self.normals)
+        for array in (*arrays, self.triangle_cap, self.cap_side, self.point_key):
             if array is not None:
                 array.setflags(write=False)
 
@@ -89,10 +95,70 @@ class Surface:
         start = np.arange(0, 3 * self.triangle_count + 1, 3)
         return PolygonMesh(self.points, start, self.triangles.reshape(-1).astype(np.int64))
 
+    @property
+    def triangle_key(self) -> np.ndarray:
+        """``2 * wall + side`` of the side of a cut that each triangle caps, -1 for the others, shape (m,)."""
+        return np.where(self.triangle_cap >= 0, 2 * self.triangle_cap + self.cap_side, -1)
+
     @cached_property
     def closed(self) -> bool:
         """Whether every edge has exactly two triangles that run along it in opposite directions."""
         return bool((self.mesh.twin >= 0).all())
+
+    def corner_uvs(self, walls: Sequence[Wall], *, scale: float = 1.0) -> np.ndarray:
+        """Texture coordinates of the triangles' corners, shape (triangle_count, 3, 2).
+
+        Caps have their own: lengths along the axes of the wall that they cap, so that a texture is not stretched on
+        them; the others have those of their points, or zeros without any.
+
+        Args:
+            walls: The cage's walls.
+            scale: Texture coordinates a metre on caps [1/m].
+        """
+        uvs = np.zeros((self.point_count, 2)) if self.uvs is None else self.uvs
+        corners = uvs[self.triangles]
+        for number in np.unique(self.triangle_cap[self.triangle_cap >= 0]).tolist():
+            cap, wall = self.triangle_cap == number, walls[number]
+            corners[cap] = scale * ((self.points[self.triangles[cap]] - wall.origin) @ wall.axes.T)
+        return corners
+
+    def corner_normals(self, walls: Sequence[Wall]) -> np.ndarray:
+        """Unit normals of the triangles' corners, shape (triangle_count, 3, 3).
+
+        Caps have that of their side of the cut; the others have those of their points, or their own plane's.
+
+        Args:
+            walls: The cage's walls.
+        """
+        if self.normals is None:
+            own = self.mesh.face_area_vector
+            length = np.linalg.norm(own, axis=1, keepdims=True)
+            corners = np.repeat((own / np.where(length > 0.0, length, 1.0))[:, None], 3, axis=1)
+        else:
+            corners = self.normals[self.triangles]
+        for number in np.unique(self.triangle_cap[self.triangle_cap >= 0]).tolist():
+            cap = self.triangle_cap == number
+            corners[cap] = (1 - 2 * self.cap_side[cap].astype(float))[:, None, None] * walls[number].normal
+        return corners
+
+    def refuse_branches(self) -> None:
+        """Raise if an edge has more than two triangles, or two that run along it in the same direction.
+
+        Raises:
+            ValueError: If so; a cut could not tell which triangles stay together.
+        """
+        mesh = self.mesh
+        order = np.argsort(mesh.edge_key, kind="stable")
+        key, first = np.unique(mesh.edge_key[order], return_index=True)
+        count = np.diff(np.append(first, len(order)))
+        bad = np.flatnonzero((count > 2) | ((count == 2) & (mesh.twin[order[first]] < 0)))
+        if len(bad):
+            a, b = divmod(int(key[bad[0]]), mesh.vertex_count)
+            triangles = mesh.face[order[first[bad[0]] : first[bad[0]] + count[bad[0]]]].tolist()
+            raise ValueError(
+                f"the surface cannot be cut: edge ({a}, {b}) joins triangles {triangles}, which is not a manifold with "
+                f"one orientation ({len(bad)} such edges); give each sheet points of its own and one orientation"
+            )
 
     @property
     def volume(self) -> float:
@@ -155,6 +221,15 @@ def _as_floats(values: np.ndarray, name: str, width: int) -> np.ndarray:
     bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
     if len(bad):
         raise ValueError(f"{name} of the surface: row {bad[0]} is not finite: {array[bad[0]].tolist()}")
+    return array
+
+
+def _as_point_values(values: np.ndarray | None, name: str, width: int, count: int) -> np.ndarray | None:
+    if values is None:
+        return None
+    array = _as_floats(values, name, width)
+    if len(array) != count:
+        raise ValueError(f"the surface has {count} points but {len(array)} {name}; give each one")
     return array
 
 

@@ -1,0 +1,91 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""Time of the topology step of a cut, and its growth with the number of the cage's faces.
+
+``python -m benchmarks.topology`` prints a table; ``--plot growth.png`` plots it, with Matplotlib. A cage is a ball with
+eight arms (the shape for which section 7 of the paper times its cuts), cut through in 40 steps.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from newton_cagecut.cage import Blade, Cage, Cut
+
+FACE_COUNTS = (100, 200, 407, 800, 1600, 3200)
+STEPS = 40
+
+
+def armed_ball(face_count: int) -> Cage:
+    """A ball with eight arms of triangles, of the number of faces or one less.
+
+    Args:
+        face_count: Wanted number of faces.
+    """
+    count = face_count // 2 + 2
+    height = 1.0 - (2.0 * np.arange(count) + 1.0) / count
+    turn = np.pi * (1.0 + np.sqrt(5.0)) * np.arange(count)
+    level = np.sqrt(1.0 - height**2)
+    directions = np.stack([level * np.cos(turn), level * np.sin(turn), height], axis=1)
+    triangles = ConvexHull(directions).simplices
+    a, b, c = (directions[triangles[:, k]] for k in range(3))
+    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0.0
+    triangles[inward] = triangles[inward, ::-1]
+    radius = 0.5 + 0.5 * np.cos(4.0 * np.arctan2(directions[:, 1], directions[:, 0])) ** 2 * level**2
+    return Cage(radius[:, None] * directions, triangles)
+
+
+def step_times(cage: Cage, steps: int = STEPS) -> tuple[np.ndarray, float]:
+    """Seconds of each step of a cut through a cage, shape (steps,), and of its beginning.
+
+    Args:
+        cage: The cage.
+        steps: Steps of equal length.
+    """
+    start = time.perf_counter()
+    cut = Cut(cage, Blade(cage.vertices.mean(axis=0), [0.1, 0.2, 1.0], [1.0, 0.3, 0.1]))
+    begun = time.perf_counter() - start
+    seconds = []
+    for step in range(1, steps + 1):
+        start = time.perf_counter()
+        edit = cut.advance(to=cut.length * step / steps)
+        _ = edit.changed_keys
+        seconds.append(time.perf_counter() - start)
+    return np.array(seconds), begun
+
+
+def main() -> None:
+    """Print, and plot if asked to."""
+    parser = argparse.ArgumentParser(description="time of the topology step of a cut")
+    parser.add_argument("--plot", metavar="FILE", help="write a plot of the growth")
+    options = parser.parse_args()
+    rows = []
+    print(f"{'faces':>6} {'crossed':>8} {'median ms':>10} {'worst ms':>9} {'begin ms':>9}")
+    for face_count in FACE_COUNTS:
+        cage = armed_ball(face_count)
+        step_times(cage, 4)
+        seconds, begun = step_times(cage)
+        crossed = Cut(cage, Blade(cage.vertices.mean(axis=0), [0.1, 0.2, 1.0], [1.0, 0.3, 0.1])).section.chord_count
+        rows.append((cage.face_count, 1e3 * np.median(seconds)))
+        print(f"{cage.face_count:>6} {crossed:>8} {rows[-1][1]:>10.2f} {1e3 * seconds.max():>9.2f} {1e3 * begun:>9.2f}")
+    if options.plot:
+        _plot(np.array(rows), options.plot)
+
+
+def _plot(rows: np.ndarray, path: str) -> None:
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(5.0, 3.5), layout="constrained")
+    axes.loglog(rows[:, 0], rows[:, 1], "o-")
+    axes.axhline(5.0, linestyle=":", color="gray")
+    axes.set_xlabel("faces of the cage")
+    axes.set_ylabel("median time of a step [ms]")
+    figure.savefig(path, dpi=150)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,89 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""Cuts that are degenerate on purpose: each gives a valid cage by the tolerance rule."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from cage_shapes import box, check_manifold
+from cut_sequences import CAGES, crossings
+from newton_cagecut.cage import Blade, Cut
+
+NAMES = ("box", "merged_cube", "star_prism", "square_torus", "collinear_prism", "convex")
+
+
+def _through(cage, blade: Blade):
+    """The cage after a cut in three steps, each checked."""
+    cut = Cut(cage, blade)
+    assert np.abs(cut.plane.distance(cage.vertices)).min() > cage.length_tolerance
+    for part in (0.3, 0.6, 1.1):
+        edit = cut.advance(to=part * cut.length)
+        check_manifold(edit.cage, cage.volume)
+        assert crossings(edit.cage) == 0
+    return cut.cage
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_planes_through_features(name):
+    """Planes through a vertex, along an edge, in a face and almost in a face."""
+    cage = CAGES[name]()
+    for face in range(0, cage.face_count, max(1, cage.face_count // 5)):
+        a, b, c = cage.vertices[list(cage.faces[face][:3])]
+        if np.linalg.norm(np.cross(b - a, c - a)) < 1e-9:
+            continue
+        _through(cage, Blade(a, [0.3, 1.0, 0.2], [1.0, 0.1, 0.4]))
+        _through(cage, Blade(a, b - a, [0.31, 0.52, 0.73]))
+        _through(cage, Blade(a, b - a, c - a))
+        for tilt in (1e-9, 1e-6, 1e-4):
+            _through(cage, Blade(a, b - a, c - a + tilt * np.array([0.3, 0.5, -0.8])))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_fronts_at_every_edge(name):
+    """A front that stops exactly where the section meets an edge, or a hair before or behind."""
+    cage = CAGES[name]()
+    center = cage.vertices.mean(axis=0) + 0.01
+    for edge, direction in (([0, 0, 1], [1, 0.2, 0]), ([0, 1, 0], [1, 0, 0]), ([0.2, 1, 0.1], [0, 0.3, 1])):
+        reached = np.sort(Cut(cage, Blade(center, edge, direction)).section.node_coordinates[:, 1])
+        for hair in (-1e-12, 0.0, 1e-12, 1e-7):
+            cut = Cut(cage, Blade(center, edge, direction))
+            for depth in np.unique(np.maximum(0.0, reached - reached[0] + hair)):
+                check_manifold(cut.advance(to=depth).cage, cage.volume)
+            assert cut.cage.vertices[:, 0].size > cage.vertex_count
+
+
+def test_slivers():
+    """Cuts a hair beside each other leave slivers that later cuts cross."""
+    cage = box()
+    for gap in (1e-8, 1e-6, 5e-6, 1e-4):
+        cut_cage = _through(cage, Blade([0.5, 0.5, 0.5], [0, 1, 0], [0, 0, -1]))
+        cut_cage = _through(cut_cage, Blade([0.5 + gap, 0.5, 0.5], [0, 1, 0], [0, 0, -1]))
+        assert cut_cage.component_count == 3
+        cut_cage = _through(cut_cage, Blade([0.5, 0.5, 0.5], [1, 0.1, 0], [0, 0.2, -1]))
+        assert cut_cage.component_count == 6
+
+
+def test_the_same_blade_again():
+    """A blade that cuts where it cut before cuts off a sliver of the tolerance's width, time and again."""
+    cage = box()
+    for pieces in (2, 3, 4, 5):
+        cage = _through(cage, Blade([0.5, 0.5, 0.5], [0, 1, 0], [0, 0, -1]))
+        assert cage.component_count == pieces
+
+
+@pytest.mark.parametrize("name", ["box", "star_prism", "square_torus"])
+def test_twenty_four_cuts(name):
+    """Twenty-four cuts of one cage, partial and complete, each crossing those before."""
+    rng = np.random.default_rng(4)
+    cage = CAGES[name]()
+    base, low, high = cage, cage.vertices.min(axis=0), cage.vertices.max(axis=0)
+    for number in range(24):
+        blade = Blade(low + (high - low) * rng.uniform(0.3, 0.7, 3), rng.normal(size=3), rng.normal(size=3))
+        cut = Cut(cage, blade)
+        cage = cut.advance(to=(0.5 if number % 2 else 1.1) * cut.length).cage
+        check_manifold(cage, base.volume)
+    assert crossings(cage) == 0
+    assert len(cage.walls) == len(base.walls) + 24
+    assert cage.component_count > 24

@@ -1,0 +1,144 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""Surfaces under curved cuts and under cuts side by side."""
+
+from __future__ import annotations
+
+import newton
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import newton_cagecut as cagecut
+from cage_shapes import box
+from newton_cagecut.cage import Blade, Cut
+from newton_cagecut.surface import Surface, SurfaceCut
+from surface_shapes import SURFACES, check_closed, icosphere, sphere
+
+RANDOM = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
+
+
+def _blade(rng: np.random.Generator) -> Blade:
+    return Blade(rng.uniform(0.3, 0.7, 3), rng.normal(size=3), rng.normal(size=3))
+
+
+def _follow(cut: Cut, surface_cut: SurfaceCut, to: float, volume: float) -> Surface:
+    """Advance both and check the surface."""
+    edit = cut.advance(to=to)
+    before = surface_cut.surface
+    surface = surface_cut.advance(edit.front).surface if not edit.is_empty else before
+    check_closed(surface, volume)
+    for side, sign in ((0, 1.0), (1, -1.0)):
+        cap = surface.triangle_key == 2 * cut.wall + side
+        facing = sign * surface.mesh.face_area_vector[cap] @ cut.plane.normal
+        assert facing.min(initial=0.0) > -1e-12
+        assert (
+            np.abs(cut.plane.distance(surface.points[surface.triangles[cap]].reshape(-1, 3))).max(initial=0.0) < 1e-12
+        )
+        if side == 0:
+            area = facing.sum()
+    assert facing.sum() == pytest.approx(area, rel=1e-9)
+    base = surface_cut.base
+    np.testing.assert_array_equal(surface.point_key[: base.point_count], base.point_key)
+    return surface
+
+
+@pytest.mark.parametrize("name", SURFACES)
+@settings(max_examples=5, **RANDOM)
+@given(st.integers(0, 2**32 - 1))
+def test_random_turns(name, seed):
+    """A cut with random turns leaves a closed surface of the same volume, with caps on every strip's plane."""
+    rng = np.random.default_rng(seed)
+    surface = SURFACES[name]()
+    volume = surface.volume
+    cut = Cut(box(), _blade(rng))
+    surface_cut = SurfaceCut(surface, cut.plane, cut.wall)
+    _follow(cut, surface_cut, rng.uniform(0.2, 0.6) * cut.length, volume)
+    for _ in range(4):
+        across, angle = np.cross(cut.plane.normal, cut.plane.edge), rng.uniform(-1.4, 1.4)
+        cut.turn(np.cos(angle) * across + np.sin(angle) * cut.plane.normal)
+        surface_cut.go_on(cut.plane, cut.wall)
+        for _ in range(2):
+            _follow(cut, surface_cut, cut.depth + rng.uniform(0.05, 0.5) * (cut.length - cut.depth), volume)
+
+
+@pytest.mark.parametrize("name", SURFACES)
+@settings(max_examples=5, **RANDOM)
+@given(st.integers(0, 2**32 - 1))
+def test_side_by_side(name, seed):
+    """Two cuts that advance in turn leave a closed surface of the same volume."""
+    rng = np.random.default_rng(seed)
+    surface, cage = SURFACES[name](), box()
+    volume = surface.volume
+    cuts = [Cut(cage, _blade(rng)) for _ in range(2)]
+    follow = [SurfaceCut(surface, cut.plane, cut.wall) for cut in cuts]
+    for part in (0.3, 0.5, 0.7, 1.05):
+        for cut, surface_cut in zip(cuts, follow, strict=True):
+            if cut.cage is not cage:
+                cut.resume(cage)
+                surface_cut.go_on(cut.plane, cut.wall, surface=surface, hinged=cut.hinged)
+            surface = _follow(cut, surface_cut, max(cut.depth, part * cut.length), volume)
+            cage = cut.cage
+    assert surface.mesh.component_count >= 2
+
+
+def test_open_surface_goes_on_without_caps():
+    """An open surface is slit on in the new direction: no caps, the same area, two parts in the end."""
+    points, triangles = icosphere(3)
+    bowl = Surface(0.4 * points + 0.5, triangles[points[triangles].mean(axis=1)[:, 2] < 0.3])
+    area = np.linalg.norm(bowl.mesh.face_area_vector, axis=1).sum()
+    cut = Cut(box(), Blade([0.51, 0.5, 0.5], [0, 1, 0.1], [0, 0.1, 1]))
+    surface_cut = SurfaceCut(bowl, cut.plane, cut.wall)
+    surface_cut.advance(cut.advance(to=0.3).front)
+    cut.turn([0.4, 0.0, 1.0])
+    surface_cut.go_on(cut.plane, cut.wall)
+    for depth in (0.4, 0.6, 5.0):
+        now = surface_cut.advance(cut.advance(to=depth).front).surface
+        assert (now.triangle_cap == -1).all()
+        np.testing.assert_allclose(np.linalg.norm(now.mesh.face_area_vector, axis=1).sum(), area, rtol=1e-12)
+    assert len(np.unique(now.mesh.vertex_component[np.unique(now.triangles)])) == 2
+
+
+def test_rewinding_a_turned_surface_cut():
+    """A snapshot from before a turn brings the very surface back, and the turn can be taken again."""
+    cut = Cut(box(), Blade([0.51, 0.5, 0.5], [0, 1, 0.1], [0, 0.1, 1]))
+    surface_cut = SurfaceCut(sphere(2), cut.plane, cut.wall)
+    first = surface_cut.advance(cut.advance(to=0.4).front).surface
+    here, there = cut.snapshot(), surface_cut.snapshot()
+    results = []
+    for _ in range(2):
+        cut.turn([1.0, 0.0, 0.5])
+        surface_cut.go_on(cut.plane, cut.wall)
+        results.append(surface_cut.advance(cut.advance(to=0.7).front).surface)
+        cut.rewind(here)
+        assert surface_cut.rewind(there) is first
+    np.testing.assert_array_equal(results[0].points, results[1].points)
+    np.testing.assert_array_equal(results[0].triangles, results[1].triangles)
+
+
+def test_curved_cuts_side_by_side_in_the_solver():
+    """A body's cut turns, another one crosses it, and both go on until pieces come off; nothing is lost."""
+    builder = newton.ModelBuilder(gravity=(0.0, 0.0, 0.0))
+    cagecut.SolverCageCut.register_custom_attributes(builder)
+    cagecut.add_cage_body(builder, box(), sphere(2, 0.4), walks=32, quadrature=60)
+    model = builder.finalize(device="cpu")
+    solver, state = cagecut.SolverCageCut(model), model.state()
+    rest = state.particle_q.numpy()[:8].copy()
+    one = solver.begin_cut(0, Blade([0.37, 0.5, 0.5], [0, 1, 0], [0, 0, -1]))
+    two = solver.begin_cut(0, Blade([0.5, 0.5, 0.23], [0, 1, 0.1], [1, 0, 0]))
+    body = solver.bodies[0]
+    solver.advance_cut(one, 0.5, states=(state,))
+    one.turn([0.3, 0.0, -1.0])
+    for cut, depth in ((one, 0.6), (two, 0.6), (one, 0.8), (two, 2.0), (one, 3.0)):
+        report = solver.advance_cut(cut, to=depth, states=(state,))
+        check_closed(body.surface, body.definition.surface.volume)
+        count = body.cage.vertex_count
+        positions = state.particle_q.numpy()[body.vertices][:count]
+        np.testing.assert_allclose(positions, body.rest.numpy()[:count], atol=1e-6)
+    np.testing.assert_array_equal(state.particle_q.numpy()[:8], rest)
+    assert report.complete
+    assert report.components == len(solver.pieces(0)) >= 3
+    weights = body.coordinates.weights
+    body.coordinates.recompute()
+    np.testing.assert_array_equal(weights, body.coordinates.weights)
