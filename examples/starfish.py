@@ -21,7 +21,7 @@ from newton_cagecut.usd import read_cage, read_surface
 ASSETS = Path(__file__).parent.parent / "assets"
 STAND_RADIUS, STAND_HEIGHT = 0.16, 0.26
 TURN = 0.8 * np.pi  # brings the arms that are cut to the front
-CUT_DISTANCE = 0.38  # of the cuts from the middle [m]; closer than 0.23 they would graze the neighbouring arms
+CUT_DISTANCE = 0.4  # of the cuts from the middle [m]; closer than 0.23 they would graze the neighbouring arms
 
 
 def across_arm(arm: int) -> cagecut.Blade:

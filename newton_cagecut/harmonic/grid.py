@@ -170,11 +170,13 @@ def _measure_new(
     first_new: int,
     cells: GridCells,
     nearest: wp.array[float],
+    reaches: wp.array[Reach],
     counts: wp.array[wp.int32],
 ):
     cell = offset + wp.tid()
     center = cell_center(cells, cell)
     reach = _reach_of_new(triangles, first_new, cells, cell, center, nearest[cell])
+    reaches[cell] = reach
     count = cells.start[cell + 1] - cells.start[cell]
     if reach.lateral >= 0.0:
         count = int(0)
@@ -195,11 +197,12 @@ def _fill_merged(
     first_new: int,
     old: GridCells,
     cells: GridCells,
+    reaches: wp.array[Reach],
     nearest: wp.array[float],
 ):
     cell = offset + wp.tid()
     center = cell_center(cells, cell)
-    reach = _reach_of_new(triangles, first_new, old, cell, center, nearest[cell])
+    reach = reaches[cell]
     wall = triangles.wall[first_new]
     slot = cells.start[cell]
     for item in range(old.start[cell], old.start[cell + 1]):
@@ -239,9 +242,11 @@ class CandidateGrid:
         cell_count = old.start.size - 1
         device = self.walls.device
         counts = wp.empty(cell_count, dtype=wp.int32, device=device)
-        launch(_measure_new, cell_count, [self.walls.data, first_new, old, self._nearest, counts], device=device)
+        reaches = wp.empty(cell_count, dtype=Reach, device=device)
+        new = [self.walls.data, first_new, old]
+        launch(_measure_new, cell_count, [*new, self._nearest, reaches, counts], device=device)
         cells = _cells_like(old, counts)
-        launch(_fill_merged, cell_count, [self.walls.data, first_new, old, cells, self._nearest], device=device)
+        launch(_fill_merged, cell_count, [*new, cells, reaches, self._nearest], device=device)
         self.cells = cells
 
     def state(self) -> tuple:
