@@ -150,11 +150,13 @@ def _reach_of_new(
     reach.nearest = nearest
     reach.lateral = -1.0
     lateral = float(1.0e30)
+    farthest = nearest + cells.size * wp.sqrt(3.0) + _MARGIN
     for t in range(first_new, triangles.count):
-        distance = _center_distance(triangles, t, center)
-        if distance <= nearest + cells.size * wp.sqrt(3.0) + _MARGIN:
-            reach.nearest = wp.min(reach.nearest, distance)
-            lateral = wp.min(lateral, _lateral_distance(triangles, t, center))
+        if wp.abs(plane_distance(triangles, t, center)) <= farthest + _MARGIN:  # most cells are out of reach
+            distance = _center_distance(triangles, t, center)
+            if distance <= farthest:
+                reach.nearest = wp.min(reach.nearest, distance)
+                lateral = wp.min(lateral, _lateral_distance(triangles, t, center))
     if lateral < 1.0e30:
         for item in range(cells.start[cell], cells.start[cell + 1]):
             if triangles.wall[cells.items[item]] == wall:
