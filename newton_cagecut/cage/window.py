@@ -38,7 +38,6 @@ class ClippedSection(Section):
         self.parted, self.parted_node, self.hinge_corner = section.parted, section.parted_node, section.hinge_corner
         self._ordinary_count = len(section.arrive)
         self._whole = section
-        self._whole_count = section.node_count
         self.node_half_edge, self.node_vertex = section.node_half_edge, section.node_vertex
         self.node_position, self.node_coordinates = section.node_position, section.node_coordinates
         self.node_pinned = np.zeros(section.node_count, dtype=bool)

@@ -46,7 +46,6 @@ class FaceTables:
     wall_origin: wp.array[wp.vec3]
     wall_axis_0: wp.array[wp.vec3]
     wall_axis_1: wp.array[wp.vec3]
-    wall_normal: wp.array[wp.vec3]
     rest: wp.array[wp.vec3d]
 
 
@@ -88,8 +87,6 @@ def build_face_tables(cage: Cage, frame: UnitFrame, *, quads: str, device: wp.co
     tables.wall_origin = wp.array(origin.astype(np.float32), dtype=wp.vec3, device=device)
     tables.wall_axis_0 = wp.array(axes[:, 0].astype(np.float32), dtype=wp.vec3, device=device)
     tables.wall_axis_1 = wp.array(axes[:, 1].astype(np.float32), dtype=wp.vec3, device=device)
-    normal = np.array([wall.normal for wall in cage.walls], dtype=np.float32)
-    tables.wall_normal = wp.array(normal, dtype=wp.vec3, device=device)
     tables.rest = wp.array(frame.to_unit(cage.vertices), dtype=wp.vec3d, device=device)
     return tables
 
