@@ -42,7 +42,7 @@ def random_blade(rng: np.random.Generator, cage: Cage) -> Blade:
 
 def crossing_blade(rng: np.random.Generator, edits: list[CageEdit]) -> Blade:
     """A blade whose plane passes through what earlier edits swept."""
-    swept = np.concatenate([edit.swept_triangles for edit in edits])
+    swept = np.concatenate([edit.swept_simplices for edit in edits])
     return Blade(swept[len(swept) // 2].mean(axis=0), rng.normal(size=3), rng.normal(size=3))
 
 

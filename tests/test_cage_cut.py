@@ -242,7 +242,7 @@ def test_blade_that_misses():
     assert edit.is_empty
     assert edit.complete
     assert edit.cage is cage
-    assert edit.swept_triangles.shape == (0, 3, 3)
+    assert edit.swept_simplices.shape == (0, 3, 3)
     assert len(edit.changed_faces) == len(edit.changed_keys) == len(edit.source_faces) == 0
 
 
@@ -292,11 +292,11 @@ def test_scale_and_offset_do_not_matter(scale):
     np.testing.assert_allclose((two.cage.vertices - shift) / scale, one.cage.vertices, atol=1e-9)
 
 
-def test_component_of_pieces():
+def test_piece_of_points():
     """Points on both sides of a complete cut lie in different components, those of a partial cut in one."""
     points = [[0.2, 0.5, 0.9], [0.8, 0.5, 0.9], [2.0, 0.0, 0.0]]
     cut = _down_the_middle(box())
-    assert cut.advance(to=0.5).cage.component_of(points).tolist() == [0, 0, -1]
-    parts = cut.advance(to=1.5).cage.component_of(points)
+    assert cut.advance(to=0.5).cage.piece_of(points).tolist() == [0, 0, -1]
+    parts = cut.advance(to=1.5).cage.piece_of(points)
     assert sorted(parts[:2].tolist()) == [0, 1]
     assert parts[2] == -1

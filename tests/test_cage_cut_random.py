@@ -124,7 +124,7 @@ def _advance(cut: Cut, depths: list[float], volume: float, checked: bool) -> Non
         for vertex, position in fixed.items():
             np.testing.assert_array_equal(edit.cage.vertices[vertex], position)
         fixed = {v: edit.cage.vertices[v] for v in range(edit.cage.vertex_count) if v not in tips}
-        swept += _area(edit.swept_triangles)
+        swept += _area(edit.swept_simplices)
         if checked:
             _check_edit(edit, cut)
     _check_sides(cut, swept)
@@ -189,7 +189,7 @@ def test_swept_walls_leave_no_gap(seed):
     cage = SHAPES["star_prism"]()
     first = Cut(cage, _random_blade(rng, cage))
     cut = Cut(first.advance(to=0.6 * first.length).cage, _random_blade(rng, cage))
-    triangles = [cut.advance(to=part * cut.length).swept_triangles for part in (0.2, 0.5, 0.9)]
+    triangles = [cut.advance(to=part * cut.length).swept_simplices for part in (0.2, 0.5, 0.9)]
     flat = cut.plane.coordinates(np.concatenate(triangles).reshape(-1, 3)).reshape(-1, 3, 2)
     sides = cut.cage.vertices[cut.cage.triangles[cut.cage.face_key[cut.cage.triangle_face] == 2 * cut.wall]]
     if not len(sides):

@@ -39,7 +39,7 @@ def test_a_knife_from_one_side():
         _check(edit, cut, 1.0)
         assert _area(cut, 0) == pytest.approx(area, abs=1e-5)
         assert _area(cut, 1) == pytest.approx(area, abs=1e-5)
-        assert np.sum([np.linalg.norm(np.cross(t[1] - t[0], t[2] - t[0])) / 2 for t in edit.swept_triangles]) > 0.0
+        assert np.sum([np.linalg.norm(np.cross(t[1] - t[0], t[2] - t[0])) / 2 for t in edit.swept_simplices]) > 0.0
         inside = (np.abs(edit.cage.vertices - 0.5) < 0.4999).all(axis=1)
         assert np.count_nonzero(inside) == (1 if depth < 1.0 else 0) + (0 if depth < 1.0 else 1)
     assert cut.complete

@@ -76,7 +76,7 @@ def test_contains_agrees_with_ray_parity(name):
     inside = hits % 2 == 1
     assert 0 < inside.sum() < 300
     np.testing.assert_array_equal(cage.contains(points), inside)
-    np.testing.assert_array_equal(cage.component_of(points), np.where(inside, 0, -1))
+    np.testing.assert_array_equal(cage.piece_of(points), np.where(inside, 0, -1))
 
 
 def test_points_in_the_plane_of_a_concave_face_are_outside():
@@ -90,7 +90,7 @@ def test_two_bodies_side_by_side():
     cage = voxels([(0, 0, 0), (2, 0, 0)], np.ones(3))
     assert cage.component_count == 2
     np.testing.assert_allclose(cage.component_volumes, 1.0)
-    assert cage.component_of([[0.5, 0.5, 0.5], [1.5, 0.5, 0.5], [2.5, 0.5, 0.5]]).tolist() == [0, -1, 1]
+    assert cage.piece_of([[0.5, 0.5, 0.5], [1.5, 0.5, 0.5], [2.5, 0.5, 0.5]]).tolist() == [0, -1, 1]
 
 
 def test_hollow_body():

@@ -171,7 +171,7 @@ def test_split_face(offset):
     (key,) = {int(k) for f, k in enumerate(cage.face_key) if np.all(cage.vertices[list(cage.faces[f])][:, 2] == 1.0)}
     weights = coordinates.boundary_weights(points, np.full(9, key), walks=64)
     assert_interpolates(weights, cage, points)
-    foreign = cage.vertex_component != cage.component_of(points - [0.0, 0.0, 0.1])[:, None]
+    foreign = cage.vertex_piece != cage.piece_of(points - [0.0, 0.0, 0.1])[:, None]
     assert foreign.any()
     assert np.all(weights[foreign] == 0.0)
 

@@ -40,7 +40,7 @@ def test_first_landings_are_nearest():
     cut = Cut(cage, random_blade(np.random.default_rng(3), cage))
     edit = cut.advance(to=0.6 * cut.length)
     coordinates.update(edit)
-    corners = np.concatenate([cage.vertices[cage.triangles], edit.swept_triangles])
+    corners = np.concatenate([cage.vertices[cage.triangles], edit.swept_simplices])
     exact = np.array([min(_distance(point, triangle) for triangle in corners) for point in points])
     np.testing.assert_allclose(coordinates.domain.distance_to_walls(points), exact, atol=1e-6)
     landed = coordinates.domain.frame.center + coordinates.domain.frame.half_side * coordinates.landings["point"]

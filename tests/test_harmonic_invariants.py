@@ -103,7 +103,7 @@ def test_other_pieces_have_no_weight(make):
             coordinates.update(cut.advance(to=depth * cut.length))
         cage = cut.cage
     assert cage.component_count >= 3
-    foreign = cage.vertex_component[None] != cage.component_of(points)[:, None]
+    foreign = cage.vertex_piece[None] != cage.piece_of(points)[:, None]
     assert np.all(coordinates.weights[foreign] == 0.0)
     assert np.all(coordinates.gradients[foreign] == 0.0)
     assert_reproduces(coordinates, points)

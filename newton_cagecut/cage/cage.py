@@ -15,6 +15,7 @@ import numpy as np
 
 from . import intersection, validation
 from .face_triangles import triangulate_faces
+from .pieces import component_piece
 from .polygon_mesh import PolygonMesh
 from .wall import Wall, face_walls
 from .winding import winding_numbers
@@ -126,6 +127,31 @@ class Cage:
         """Number of connected components."""
         return self.mesh.component_count
 
+    @cached_property
+    def component_piece(self) -> np.ndarray:
+        """Solid piece to which each component belongs, a cavity's to that around it, shape (component_count,)."""
+        return component_piece(self)
+
+    @property
+    def face_piece(self) -> np.ndarray:
+        """Solid piece that each face bounds, shape (face_count,)."""
+        return self.component_piece[self.face_component]
+
+    @property
+    def vertex_piece(self) -> np.ndarray:
+        """Solid piece of each vertex, numbered by their lowest vertices, shape (vertex_count,)."""
+        return self.component_piece[self.vertex_component]
+
+    @property
+    def piece_volumes(self) -> np.ndarray:
+        """Volume of each solid piece, cavities taken off, shape (piece_count,) [m^3]."""
+        return np.bincount(self.component_piece, weights=self.component_volumes)
+
+    @property
+    def piece_count(self) -> int:
+        """Number of solid pieces."""
+        return int(self.component_piece.max()) + 1
+
     @property
     def component_volumes(self) -> np.ndarray:
         """Enclosed volume of each component, negative for a cavity, shape (component_count,) [m^3]."""
@@ -162,6 +188,16 @@ class Cage:
     def triangles(self) -> np.ndarray:
         """Triangles of the faces as vertex ids, shape (triangle_count, 3)."""
         return self._triangulation[0]
+
+    @property
+    def simplices(self) -> np.ndarray:
+        """What the boundary is made of: the triangles of the faces, shape (simplex_count, dimension)."""
+        return self.triangles
+
+    @property
+    def simplex_face(self) -> np.ndarray:
+        """Face of each simplex, sorted, shape (simplex_count,)."""
+        return self.triangle_face
 
     @property
     def triangle_face(self) -> np.ndarray:
@@ -204,18 +240,18 @@ class Cage:
         """
         return self.winding_numbers(points).sum(axis=1) > 0.5
 
-    def component_of(self, points: np.ndarray) -> np.ndarray:
-        """Component in which points lie.
+    def piece_of(self, points: np.ndarray) -> np.ndarray:
+        """Solid piece in which points lie.
 
         Args:
             points: Points, shape (point_count, 3) [m].
 
         Returns:
-            Component of each point, -1 outside the cage, shape (point_count,).
+            Piece of each point, -1 outside the cage, shape (point_count,).
         """
         number = self.winding_numbers(points)
         volume = np.where((number > 0.5) & (self.component_volumes > 0.0), self.component_volumes, np.inf)
-        return np.where(number.sum(axis=1) > 0.5, volume.argmin(axis=1), -1)
+        return np.where(number.sum(axis=1) > 0.5, self.component_piece[volume.argmin(axis=1)], -1)
 
     def _check_surface(self) -> None:
         if self.diameter == 0.0:

@@ -1,45 +1,39 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""What one advance of a cut did to a cage.
+"""What one edit did to a cage: an advance of a cut, an obstacle put in, a face moved outward.
 
 Section 5.2 of the paper lists what the weights' update has to know of a cut: faces being split, the sides of the cut,
-the newly swept polygon, vertices created or displaced.
+the newly swept polygon, vertices created or displaced. Section 8 names extending and obstructing edits besides.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from .blade import BladePlane
 from .cage import Cage
-from .pieces import CagePiece, component_piece, pieces_of
+from .pieces import CagePiece, pieces_of
 
 
 @dataclass(frozen=True, eq=False)
 class CageEdit:
-    """One step of a cut: the cage before and after, and how they differ."""
+    """One step: the cage before and after, and how they differ."""
 
     before: Cage
     """The cage before the step."""
     cage: Cage
     """The cage after the step."""
-    wall: int
-    """Number of the cut's wall in ``cage.walls``, which have it as soon as something is open."""
-    plane: BladePlane
-    """Plane of the cut."""
-    front: float
-    """Coordinate s of the blade in the plane [m]."""
-    depth: float
-    """Depth of the cut from where the blade first touches [m]."""
-    complete: bool
-    """Whether nothing is left to cut."""
     swept: tuple[np.ndarray, ...]
-    """Polygons newly swept, counterclockwise about the plane's normal, each of shape (corner_count, 3) [m]."""
-    swept_triangles: np.ndarray
-    """The same as triangles, shape (triangle_count, 3, 3) [m]."""
+    """Polygons of new wall, counterclockwise about their wall's normal, each of shape (corner_count, 3) [m]."""
+    swept_wall: np.ndarray
+    """Wall of each of them, ascending, shape (polygon_count,)."""
+    swept_simplices: np.ndarray
+    """The same as triangles, shape (simplex_count, 3, 3) [m]."""
+    swept_simplex_wall: np.ndarray
+    """Wall of each triangle, ascending, shape (simplex_count,)."""
     created: np.ndarray
     """Ids of the vertices that are new, shape (created_count,)."""
     moved: np.ndarray
@@ -49,6 +43,18 @@ class CageEdit:
 
     It is -1 for those inside the body, at the corners of the front of a knife of finite width.
     """
+    retired_walls: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    """Walls that bound the cage no longer, ascending, shape (retired_count,); no face of ``cage`` is on them."""
+    wall: int = -1
+    """Number of a cut's wall in ``cage.walls``, which have it as soon as something is open; -1 for other edits."""
+    plane: BladePlane | None = None
+    """Plane of a cut."""
+    front: float = np.nan
+    """Coordinate s of a cut's blade in the plane [m]."""
+    depth: float = np.nan
+    """Depth of a cut from where the blade first touches [m]."""
+    complete: bool = True
+    """Whether nothing is left to cut."""
 
     @property
     def is_empty(self) -> bool:
@@ -65,7 +71,7 @@ class CageEdit:
         """Whether a piece came off in this step."""
         if self.is_empty or self.before.component_count == self.cage.component_count == 1:
             return False
-        return int(component_piece(self.cage).max()) > int(component_piece(self.before).max())
+        return self.cage.piece_count > self.before.piece_count
 
     @cached_property
     def _same(self) -> np.ndarray:

@@ -51,9 +51,8 @@ def pieces_of(cage: Cage) -> tuple[CagePiece, ...]:
     Args:
         cage: The cage, which may have been cut.
     """
-    piece = component_piece(cage)
-    volume = np.bincount(piece, weights=cage.component_volumes)
-    of_vertex, of_face = piece[cage.vertex_component], piece[cage.face_component]
+    volume = cage.piece_volumes
+    of_vertex, of_face = cage.vertex_piece, cage.face_piece
     return tuple(
         CagePiece(np.flatnonzero(of_vertex == i), np.flatnonzero(of_face == i), float(volume[i]))
         for i in range(len(volume))

@@ -135,7 +135,8 @@ class Strip:
         polygons = region.polygons()
         cage = open_cage(self.base, opening, self._opened_wall)
         created, moved, source = self._changed_vertices(state, cage, opening, region)
-        triangles = [np.array(loop)[triangulate(region.coordinates[loop])] for loop in polygons]
+        parts = [np.array(loop)[triangulate(region.coordinates[loop])] for loop in polygons]
+        triangles = np.concatenate([np.zeros((0, 3), dtype=np.int64), *parts])
         edit = CageEdit(
             before=state.cage,
             cage=cage,
@@ -145,7 +146,9 @@ class Strip:
             depth=depth,
             complete=self.is_complete(front),
             swept=tuple(region.position[loop] for loop in polygons),
-            swept_triangles=region.position[np.concatenate(triangles)] if triangles else np.zeros((0, 3, 3)),
+            swept_wall=np.full(len(polygons), self.wall),
+            swept_simplices=region.position[triangles],
+            swept_simplex_wall=np.full(len(triangles), self.wall),
             created=created,
             moved=moved,
             source_faces=source,
@@ -163,7 +166,9 @@ class Strip:
             depth=depth,
             complete=self.is_complete(front),
             swept=(),
-            swept_triangles=np.zeros((0, 3, 3)),
+            swept_wall=none,
+            swept_simplices=np.zeros((0, 3, 3)),
+            swept_simplex_wall=none,
             created=none,
             moved=none,
             source_faces=none,

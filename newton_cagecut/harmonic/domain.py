@@ -26,7 +26,7 @@ class DomainChange:
     Args:
         pieces: Bounds of the new pieces of wall.
         changed_keys: Whether landings with key 2 * wall + side need their face again, shape (2 * wall_count,).
-        regrouped: Whether the components are other ones than before.
+        regrouped: Whether the pieces are other ones than before.
     """
 
     pieces: PieceBounds
@@ -77,11 +77,11 @@ class Domain:
         """Whether any face needs a nested walk."""
         return bool((self.faces.kind.numpy() == int(NESTED)).any())
 
-    def components_of(self, points: np.ndarray) -> np.ndarray:
-        """Component of the cage that each rest position lies in; all 0 while there is one. Shape (n,)."""
-        if self.cage.component_count == 1:
+    def pieces_of(self, points: np.ndarray) -> np.ndarray:
+        """Piece of the cage that each rest position lies in; all 0 while there is one. Shape (n,)."""
+        if self.cage.piece_count == 1:
             return np.zeros(len(points), dtype=np.int32)
-        return np.asarray(self.cage.component_of(points), dtype=np.int32)
+        return np.asarray(self.cage.piece_of(points), dtype=np.int32)
 
     def distance_to_walls(self, points: np.ndarray) -> np.ndarray:
         """Distance of rest positions [m] to the nearest wall [m], shape (n,)."""
@@ -102,10 +102,10 @@ class Domain:
             raise ValueError(
                 "update: the edit starts from another cage than the one held; pass every edit of a cut, in order"
             )
-        if len(edit.swept_triangles):
-            corners = np.asarray(edit.swept_triangles)
+        for wall in np.unique(edit.swept_simplex_wall).tolist():
+            corners = edit.swept_simplices[edit.swept_simplex_wall == wall]
             first = self.walls.triangle_count
-            self._append(corners, np.full(len(corners), edit.wall), edit.cage)
+            self._append(corners, np.full(len(corners), wall), edit.cage)
             self.grid.merge(first)
         self.faces = build_face_tables(edit.cage, self.frame, quads=self.quads, device=self.device)
         change = self._change(edit)
@@ -134,9 +134,10 @@ class Domain:
 
     def _change(self, edit: CageEdit) -> DomainChange:
         polygons = [self.frame.to_unit(polygon) for polygon in edit.swept]
-        along = [_directions(polygon, edit.plane.normal) for polygon in polygons]
+        normals = [edit.cage.walls[wall].normal for wall in edit.swept_wall]
+        along = [_directions(polygon, normal) for polygon, normal in zip(polygons, normals)]
         pieces = bound_pieces(polygons, along, self.device)
-        regrouped = _components_differ(edit.before, edit.cage)
+        regrouped = _pieces_differ(edit.before, edit.cage)
         changed = np.zeros((len(edit.cage.walls), 2), dtype=bool)
         changed.reshape(-1)[np.asarray(edit.changed_keys, dtype=np.int64)] = True
         if regrouped:
@@ -153,14 +154,14 @@ def _directions(polygon: np.ndarray, normal: np.ndarray) -> np.ndarray:
     return np.stack([normal, across / max(np.linalg.norm(across), 1.0e-30)])
 
 
-def _components_differ(before: Cage, after: Cage) -> bool:
-    """Whether the faces that both cages have are grouped in other components."""
-    if before.component_count != after.component_count:
+def _pieces_differ(before: Cage, after: Cage) -> bool:
+    """Whether the faces that both cages have are grouped in other pieces."""
+    if before.piece_count != after.piece_count:
         return True
-    if after.component_count == 1:
+    if after.piece_count == 1:
         return False
     shared = min(before.vertex_count, after.vertex_count)
-    return not np.array_equal(before.vertex_component[:shared], after.vertex_component[:shared])
+    return not np.array_equal(before.vertex_piece[:shared], after.vertex_piece[:shared])
 
 
 def _ambiguous_keys(cage: Cage) -> np.ndarray:

@@ -39,8 +39,8 @@ class FaceTables:
     loop_point: wp.array[wp.vec2]
     kind: wp.array[wp.int32]
     orientation: wp.array[float]
-    component: wp.array[wp.int32]
-    vertex_component: wp.array[wp.int32]
+    piece: wp.array[wp.int32]
+    vertex_piece: wp.array[wp.int32]
     key_start: wp.array[wp.int32]
     key_face: wp.array[wp.int32]
     wall_origin: wp.array[wp.vec3]
@@ -75,8 +75,8 @@ def build_face_tables(cage: Cage, frame: UnitFrame, *, quads: str, device: wp.co
         "loop_start": start,
         "loop_vertex": vertex,
         "kind": _kinds(local, start, orientation, quads=quads),
-        "component": cage.face_component,
-        "vertex_component": cage.vertex_component,
+        "piece": cage.face_piece,
+        "vertex_piece": cage.vertex_piece,
         "key_start": np.concatenate([[0], np.cumsum(key_count)]),
         "key_face": np.argsort(key, kind="stable"),
     }
@@ -135,21 +135,21 @@ def distance_outside(tables: FaceTables, face: int, x: wp.vec2) -> float:
 
 
 @wp.func
-def face_of_landing(tables: FaceTables, key: int, x: wp.vec2, component: int) -> int:
-    """The face of a wall's side that holds a landing, among those of the walk's component.
+def face_of_landing(tables: FaceTables, key: int, x: wp.vec2, piece: int) -> int:
+    """The face of a wall's side that holds a landing, among those of the walk's piece.
 
-    Restricting it to the component makes the weights of other components zero exactly, whatever is rounded.
-    ``component`` -1 means any.
+    Restricting it to the piece makes the weights of other pieces zero exactly, whatever is rounded.
+    ``piece`` -1 means any.
     """
     first = tables.key_start[key]
     last = tables.key_start[key + 1]
-    if last - first == 1 and component < 0:
+    if last - first == 1 and piece < 0:
         return tables.key_face[first]
     best = int(-1)
     nearest = float(2.0e30)
     for row in range(first, last):
         face = tables.key_face[row]
-        if component < 0 or tables.component[face] == component:
+        if piece < 0 or tables.piece[face] == piece:
             distance = distance_outside(tables, face, x)
             if distance < nearest:
                 best = face

@@ -190,11 +190,11 @@ def boundary_value(tables: FaceTables, face: int, edge: int, param: float, local
 
 
 @wp.func
-def landed_face(tables: FaceTables, key: int, local: wp.vec2, component: int) -> int:
+def landed_face(tables: FaceTables, key: int, local: wp.vec2, piece: int) -> int:
     """The face of a landing: on its own side; on the other where rounding put the walk's end across a cut."""
-    face = face_of_landing(tables, key, local, component)
+    face = face_of_landing(tables, key, local, piece)
     if face < 0:
-        face = face_of_landing(tables, key ^ 1, local, component)
+        face = face_of_landing(tables, key ^ 1, local, piece)
     if face < 0:
         face = face_of_landing(tables, key, local, -1)
     if face < 0:
@@ -230,7 +230,7 @@ def make_land_kernel(*, nested: bool) -> wp.Kernel:
         point = (first_walk + walk) // walks
         key = landings.key[walk] & KEY_MASK
         local = plane_point(tables, key // 2, landings.point[walk])
-        face = landed_face(tables, key, local, points.component[point])
+        face = landed_face(tables, key, local, points.piece[point])
         landings.face[walk] = face
         edge = NOWHERE
         param = float(0.0)

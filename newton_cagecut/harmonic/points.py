@@ -14,13 +14,13 @@ class QueryPoints:
     """Points whose coordinates are wanted, shape (point_capacity,) each.
 
     ``position`` is in the unit frame. ``key`` is 2 * wall + side for a point on a wall, whose walks end where they
-    start, and -1 for a point inside. ``component`` is that of the cage, -1 on a wall. ``gradient_row`` is the point's
+    start, and -1 for a point inside. ``piece`` is that of the cage, -1 on a wall. ``gradient_row`` is the point's
     row among the gradients, -1 without. ``first_radius`` is the distance to the walls, measured by the first walk.
     """
 
     position: wp.array[wp.vec3]
     key: wp.array[wp.int32]
-    component: wp.array[wp.int32]
+    piece: wp.array[wp.int32]
     gradient_row: wp.array[wp.int32]
     first_radius: wp.array[float]
 
@@ -32,7 +32,7 @@ def empty_points(capacity: int, gradient_mask: np.ndarray, device: wp.context.De
     points = QueryPoints()
     points.position = wp.zeros(capacity, dtype=wp.vec3, device=device)
     points.key = wp.full(capacity, -1, dtype=wp.int32, device=device)
-    points.component = wp.zeros(capacity, dtype=wp.int32, device=device)
+    points.piece = wp.zeros(capacity, dtype=wp.int32, device=device)
     points.gradient_row = wp.array(rows, dtype=wp.int32, device=device)
     points.first_radius = wp.zeros(capacity, dtype=float, device=device)
     return points

@@ -183,12 +183,10 @@ def is_flat(factor: Gram) -> bool:
 
 
 @wp.func
-def correct_affinely(
-    moments: Moments, tables: FaceTables, slot: int, component: int, vertex_count: int, origin: wp.vec3d
-):
+def correct_affinely(moments: Moments, tables: FaceTables, slot: int, piece: int, vertex_count: int, origin: wp.vec3d):
     """Add the least change that restores unit sum and linear precision (paper, equation 5), gradients likewise.
 
-    It is spread over the vertices of the point's own component.
+    It is spread over the vertices of the point's own piece.
     """
     normal = wp.mat44d()
     missing = wp.vec4d(_ZERO, _ZERO, _ZERO, _ONE)
@@ -196,7 +194,7 @@ def correct_affinely(
     for axis in range(3):
         slopes[axis, axis] = _ONE
     for j in range(vertex_count):
-        if tables.vertex_component[j] == component:
+        if tables.vertex_piece[j] == piece:
             v = tables.rest[j] - origin
             a = wp.vec4d(v[0], v[1], v[2], _ONE)
             normal += wp.outer(a, a)
@@ -206,7 +204,7 @@ def correct_affinely(
     missing = inverse * missing
     slopes = inverse * slopes
     for j in range(vertex_count):
-        if tables.vertex_component[j] == component:
+        if tables.vertex_piece[j] == piece:
             v = tables.rest[j] - origin
             a = wp.vec4d(v[0], v[1], v[2], _ONE)
             value = moments.value[slot, j]
@@ -290,7 +288,7 @@ def make_resolve_kernel(*, correction: str, gradients: bool) -> wp.Kernel:
         # The estimator's factor 3 / r has a variance of about 9 / (r N): next to a wall r is held where that is small.
         radius = wp.max(points.first_radius[point], _SHORTEST_RADIUS / float(walks))
         flux_scale = scale * wp.float64(3.0) / wp.float64(radius)
-        component = tables.component[landings.face[first_walk]]
+        piece = tables.piece[landings.face[first_walk]]
         degree = int(0)
         if wp.static(correction == "harmonic"):
             gram = factor_gram(gram, feature_count_of_degree(max_degree))
@@ -309,13 +307,13 @@ def make_resolve_kernel(*, correction: str, gradients: bool) -> wp.Kernel:
                     moments.slope[slot, j] = wp.vec3d(fit[1], fit[2], fit[3]) + left_over * flux_scale
             if points.key[point] < 0 and (degree == 0 or is_flat(gram)):
                 degree = 0
-                correct_affinely(moments, tables, slot, component, vertex_count, origin)
+                correct_affinely(moments, tables, slot, piece, vertex_count, origin)
         else:
             for j in range(vertex_count):
                 moments.value[slot, j] = moments.value[slot, j] * scale
                 moments.slope[slot, j] = moments.slope[slot, j] * flux_scale
             if wp.static(correction == "affine"):
-                correct_affinely(moments, tables, slot, component, vertex_count, origin)
+                correct_affinely(moments, tables, slot, piece, vertex_count, origin)
         degrees[point] = degree
         for j in range(vertex_count):
             weights[point, j] = float(moments.value[slot, j][0])

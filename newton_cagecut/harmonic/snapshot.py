@@ -19,7 +19,7 @@ from .domain import Domain, DomainState
 from .landing import LANDING_DTYPES
 from .walker import Walker
 
-_POINT_ARRAYS = ("position", "key", "component", "gradient_row", "first_radius")
+_POINT_ARRAYS = ("position", "key", "piece", "gradient_row", "first_radius")
 
 
 @dataclass(frozen=True, eq=False)

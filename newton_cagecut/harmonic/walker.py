@@ -96,15 +96,15 @@ class Walker:
         self._rest[indices] = points
         _scatter(self.points.position, indices, self.domain.frame.to_unit(points).astype(np.float32))
         _scatter(self.points.key, indices, keys)
-        components = np.full(len(indices), -1, np.int32)
+        pieces = np.full(len(indices), -1, np.int32)
         inner = keys < 0
-        components[inner] = self.domain.components_of(points[inner])
-        _scatter(self.points.component, indices, components)
+        pieces[inner] = self.domain.pieces_of(points[inner])
+        _scatter(self.points.piece, indices, pieces)
 
     def group_points(self) -> None:
-        """Find the component of every point that is not on a wall again."""
+        """Find the piece of every point that is not on a wall again."""
         inner = np.flatnonzero(self.points.key.numpy()[: self.point_count] < 0)
-        _scatter(self.points.component, inner, self.domain.components_of(self._rest[inner]))
+        _scatter(self.points.piece, inner, self.domain.pieces_of(self._rest[inner]))
 
     def run_all(self, stats: UpdateStats, *, progress: Callable[[float], None] | None = None) -> None:
         """Walk, land and resolve every point, in batches where walks are not kept."""

@@ -90,7 +90,7 @@ class BodyCut:
         transfer = _Transfer(body, edit)
         clock.lap("transfer")
         stats = self._update_weights(edit, surface_edit)
-        if edit.cage.component_count > edit.before.component_count:
+        if edit.cage.piece_count > edit.before.piece_count:
             body.distribute_quadrature()
         clock.lap("coordinates")
         self.cut, self._surface_cut = cut, surface_cut
@@ -104,7 +104,7 @@ class BodyCut:
         return CutReport(
             depth=cut.depth,
             complete=cut.complete,
-            components=edit.cage.component_count,
+            components=edit.cage.piece_count,
             separated=edit.separated,
             vertices_created=len(edit.created),
             points_created=len(surface_edit.created),

@@ -49,9 +49,9 @@ class Quadrature:
             cage: The cage as it is now.
             coordinates: Coordinates whose first points are these; spare points are moved in them.
         """
-        piece = np.asarray(cage.component_of(self.points))
+        piece = cage.piece_of(self.points)
         piece[self._used :] = -1
-        for index, volume in enumerate(cage.component_volumes):
+        for index, volume in enumerate(cage.piece_volumes):
             own = np.flatnonzero(piece == index)
             if len(own) < _FEWEST:
                 own = np.concatenate([own, self._place(cage, index, _FEWEST - len(own), coordinates)])
@@ -63,10 +63,10 @@ class Quadrature:
     def _place(self, cage: Cage, piece: int, count: int, coordinates: HarmonicCoordinates) -> np.ndarray:
         """Move spare points into a piece, away from its faces and from each other; returns their indices."""
         count = min(count, len(self.points) - self._used)
-        corners = cage.vertices[cage.vertex_component == piece]
+        corners = cage.vertices[cage.vertex_piece == piece]
         low, high = corners.min(axis=0), corners.max(axis=0)
         candidates = low + (high - low) * self._rng.random((_CANDIDATE_COUNT, len(low)))
-        candidates = candidates[np.asarray(cage.component_of(candidates)) == piece]
+        candidates = candidates[cage.piece_of(candidates) == piece]
         if count <= 0 or not len(candidates):
             return np.zeros(0, dtype=np.int64)
         depth = coordinates.domain.distance_to_walls(candidates)
