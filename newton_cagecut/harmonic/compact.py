@@ -3,12 +3,12 @@
 
 """Marking the walks that an edit concerns, and gathering them so that only they are run."""
 
-from __future__ import annotations
+from functools import cache
 
 import numpy as np
 import warp as wp
 
-from .bounds import PieceBounds, QuantizedExtents, overlaps_any
+from .bounds_kind import BoundsKind
 from .landing import KEY_MASK, Landings
 
 wp.set_module_options({"enable_backward": False})
@@ -18,29 +18,39 @@ REWALK = wp.constant(wp.uint8(1))
 ON_FACE = wp.constant(wp.uint8(2))
 
 
-@wp.kernel(enable_backward=False)
-def mark_walks(
-    offset: int,
-    walks: int,
-    bounds: wp.array[QuantizedExtents],
-    pieces: PieceBounds,
-    landings: Landings,
-    changed_keys: wp.array[wp.uint8],
-    marks: wp.array[wp.uint8],
-    touched: wp.array[wp.uint8],
-):
-    """Sort a walk into the paper's three classes (section 5.2): walk again, evaluate again on its face, reuse."""
-    walk = offset + wp.tid()
-    mark = KEPT
-    on_changed_face = changed_keys[landings.key[walk] & KEY_MASK] != wp.uint8(0)
-    if overlaps_any(bounds[walk], pieces):
-        mark = REWALK
-    elif on_changed_face:
-        mark = ON_FACE
-    marks[walk] = mark
-    # A walk that is walked again touches its point only if it then ends elsewhere, which the walk itself finds out.
-    if on_changed_face:
-        touched[walk // walks] = wp.uint8(1)
+@cache
+def make_mark_kernel(bounds_kind: BoundsKind) -> wp.Kernel:
+    """Make the kernel that sorts walks by what an edit means for them.
+
+    Args:
+        bounds_kind: Kind of the walks' bounds.
+    """
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def mark_walks(
+        offset: int,
+        walks: int,
+        bounds: wp.array[bounds_kind.Quantized],
+        pieces: bounds_kind.PieceBounds,
+        landings: Landings,
+        changed_keys: wp.array[wp.uint8],
+        marks: wp.array[wp.uint8],
+        touched: wp.array[wp.uint8],
+    ):
+        """Sort a walk into the paper's three classes (section 5.2): walk again, evaluate again on its face, reuse."""
+        walk = offset + wp.tid()
+        mark = KEPT
+        on_changed_face = changed_keys[landings.key[walk] & KEY_MASK] != wp.uint8(0)
+        if bounds_kind.overlaps_any(bounds[walk], pieces):
+            mark = REWALK
+        elif on_changed_face:
+            mark = ON_FACE
+        marks[walk] = mark
+        # A walk that is walked again touches its point only if it then ends elsewhere, which the walk itself finds out.
+        if on_changed_face:
+            touched[walk // walks] = wp.uint8(1)
+
+    return mark_walks
 
 
 @wp.kernel(enable_backward=False)

@@ -11,7 +11,7 @@ import numpy as np
 import warp as wp
 
 from ..cage import Cage, CageEdit, check_inside
-from .compact import ON_FACE, REWALK, gather, mark_walks
+from .compact import ON_FACE, REWALK, gather, make_mark_kernel
 from .domain import Domain, DomainChange
 from .landing import LANDING_DTYPES
 from .launch import launch
@@ -33,7 +33,8 @@ class HarmonicCoordinates:
         cuttable: Whether to keep the walk cache that updates need (64 bytes a walk).
         device: Where to walk; Warp's current device by default.
         correction: "harmonic" (control variates), "affine" (paper, equation 5) or "none" (plain means).
-        bounds: Bounding volume of a walk; "dop18".
+        bounds: Bounding volume of a walk: "dop18", "dop26", "aabb" or "sphere". Smaller ones send more walks to be
+            walked again; the results are identical.
         distance: "grid" (candidate grid) or "all" (every wall); the results are identical.
         quads: "mean_value" (paper, equation 4) or "harmonic" for convex quads of the cage.
         epsilon: Distance at which a walk lands, relative to half of the longest side of the cage's bounding box.
@@ -143,7 +144,7 @@ class HarmonicCoordinates:
 
     @property
     def bounds(self) -> np.ndarray:
-        """The cached bounds of the walks, quantised, shape (walk_count, 18); a copy."""
+        """The cached bounds of the walks, quantised, a row a walk; a copy."""
         return self._cache_of("bounds").bounds.numpy()[: self.point_count * self.walks].copy()
 
     def memory(self) -> dict[str, int]:
@@ -274,13 +275,15 @@ class HarmonicCoordinates:
         walker, device = self._walker, self.domain.device
         walk_count = self.point_count * self.walks
         with stats.time("check", device):
+            kind = walker.bounds_kind
+            pieces = kind.bound_pieces(change.polygons, change.directions, device)
             marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
             touched = wp.zeros(self.point_count, dtype=wp.uint8, device=device)
             changed = wp.array(change.changed_keys.astype(np.uint8), dtype=wp.uint8, device=device)
             launch(
-                mark_walks,
+                make_mark_kernel(kind),
                 walk_count,
-                [self.walks, walker.bounds, change.pieces, walker.landings, changed, marks, touched],
+                [self.walks, walker.bounds, pieces, walker.landings, changed, marks, touched],
                 device=device,
             )
             rewalk, on_face = gather(marks, int(REWALK)), gather(marks, int(ON_FACE))

@@ -11,7 +11,6 @@ import numpy as np
 import warp as wp
 
 from ..cage import Cage, CageEdit
-from .bounds import PieceBounds, bound_pieces
 from .faces import NESTED, FaceTables, build_face_tables
 from .frame import UnitFrame
 from .grid import CandidateGrid
@@ -24,12 +23,14 @@ class DomainChange:
     """What an edit means for walks.
 
     Args:
-        pieces: Bounds of the new pieces of wall.
+        polygons: New pieces of wall in the unit frame, shape (k, 3) each.
+        directions: Directions along which each of them is thin, shape (2, 3) each.
         changed_keys: Whether landings with key 2 * wall + side need their face again, shape (2 * wall_count,).
         regrouped: Whether the pieces are other ones than before.
     """
 
-    pieces: PieceBounds
+    polygons: list[np.ndarray]
+    directions: list[np.ndarray]
     changed_keys: np.ndarray
     regrouped: bool
 
@@ -136,14 +137,13 @@ class Domain:
         polygons = [self.frame.to_unit(polygon) for polygon in edit.swept]
         normals = [edit.cage.walls[wall].normal for wall in edit.swept_wall]
         along = [_directions(polygon, normal) for polygon, normal in zip(polygons, normals)]
-        pieces = bound_pieces(polygons, along, self.device)
         regrouped = _pieces_differ(edit.before, edit.cage)
         changed = np.zeros((len(edit.cage.walls), 2), dtype=bool)
         changed.reshape(-1)[np.asarray(edit.changed_keys, dtype=np.int64)] = True
         if regrouped:
             changed.reshape(-1)[_ambiguous_keys(edit.cage)] = True
         changed |= changed.any(axis=1, keepdims=True)
-        return DomainChange(pieces, changed.reshape(-1), regrouped)
+        return DomainChange(polygons, along, changed.reshape(-1), regrouped)
 
 
 def _directions(polygon: np.ndarray, normal: np.ndarray) -> np.ndarray:

@@ -8,13 +8,11 @@ its spheres gives the same landing and bounds, bit for bit, and otherwise it ret
 that a new wall entered and goes on from there, which is the paper's section 4.2.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import warp as wp
 
-from .bounds import QuantizedExtents, empty_extents, extend, quantize
+from .bounds_kind import BoundsKind
 from .grid import GridCells, nearest_in_grid
 from .landing import CAPPED, Landings
 from .points import QueryPoints
@@ -45,12 +43,13 @@ def differs(a: wp.vec3, b: wp.vec3) -> bool:
 
 
 @cache
-def make_walk_kernel(*, distance: str, bounded: bool) -> wp.Kernel:
+def make_walk_kernel(*, distance: str, bounded: bool, bounds_kind: BoundsKind) -> wp.Kernel:
     """Make the kernel that walks.
 
     Args:
         distance: "grid" for the candidate grid, "all" for every wall.
         bounded: Whether to keep the walks' bounds; without, their code is left out.
+        bounds_kind: Kind of the walks' bounds.
     """
     use_grid = distance == "grid"
 
@@ -67,7 +66,7 @@ def make_walk_kernel(*, distance: str, bounded: bool) -> wp.Kernel:
         epsilon: float,
         max_steps: int,
         landings: Landings,
-        bounds: wp.array[QuantizedExtents],
+        bounds: wp.array[bounds_kind.Quantized],
         touched: wp.array[wp.uint8],
     ):
         slot = offset + wp.tid()
@@ -77,12 +76,12 @@ def make_walk_kernel(*, distance: str, bounded: bool) -> wp.Kernel:
         point = (first_walk + walk) // walks
         number = wp.uint32((first_walk + walk) % walks)
         x = points.position[point]
-        extents = empty_extents()
+        extents = bounds_kind.empty()
         if points.key[point] >= 0:
             landings.key[walk] = points.key[point]
             landings.point[walk] = x
             if wp.static(bounded):
-                bounds[walk] = quantize(extents)
+                bounds[walk] = bounds_kind.quantize(extents)
             return
         nearest = Nearest()
         nearest.distance_squared = 1.0e30
@@ -95,7 +94,7 @@ def make_walk_kernel(*, distance: str, bounded: bool) -> wp.Kernel:
                 nearest = nearest_of_all(triangles, x, nearest)
             radius = wp.sqrt(nearest.distance_squared)
             if wp.static(bounded):
-                extents = extend(extents, x, radius)
+                extents = bounds_kind.extend(extents, x, radius)
             if step == 0 and number == wp.uint32(0):
                 if wp.static(bounded):
                     if points.first_radius[point] != radius:
@@ -120,6 +119,6 @@ def make_walk_kernel(*, distance: str, bounded: bool) -> wp.Kernel:
         landings.key[walk] = key
         landings.point[walk] = nearest.point
         if wp.static(bounded):
-            bounds[walk] = quantize(extents)
+            bounds[walk] = bounds_kind.quantize(extents)
 
     return walk_on_spheres

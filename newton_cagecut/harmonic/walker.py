@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 import warp as wp
 
-from .bounds import QuantizedExtents
+from .bounds import make_bounds
 from .compact import count_capped
 from .domain import Domain
 from .landing import CAPPED, LANDING_DTYPES, Landings, make_land_kernel
@@ -61,7 +61,8 @@ class Walker:
             raise ValueError(f"{point_capacity} points x {options.walks} walks are 2^31 or more; lower either")
         kept = point_capacity * options.walks if cuttable else 0
         self.landings = _empty_landings(kept, device)
-        self.bounds = wp.empty(kept, dtype=QuantizedExtents, device=device)
+        self.bounds_kind = make_bounds(options.bounds, domain.cage.dimension)
+        self.bounds = wp.empty(kept, dtype=self.bounds_kind.Quantized, device=device)
         self._touched = wp.zeros(point_capacity, dtype=wp.uint8, device=device)
         self._make_weights(vertex_capacity or domain.cage.vertex_count)
 
@@ -137,7 +138,7 @@ class Walker:
         progress: Callable[[float], None] | None = None,
     ) -> None:
         """Walk the walks listed in ``work``, or the first ``count`` where it is empty; mark points that it touched."""
-        kernel = make_walk_kernel(distance=self.domain.distance, bounded=self.cuttable)
+        kernel = make_walk_kernel(distance=self.domain.distance, bounded=self.cuttable, bounds_kind=self.bounds_kind)
         options, domain = self.options, self.domain
         inputs = [work, options.walks, first_point * options.walks, wp.uint32(options.seed), self.points]
         inputs += [domain.walls.data, domain.grid.cells, options.epsilon, options.max_steps]
