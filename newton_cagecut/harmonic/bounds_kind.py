@@ -38,6 +38,7 @@ class BoundsKind:
         bound_pieces: ``(polygons, directions, device) -> PieceBounds``: corners of each planar piece in the unit frame,
             shape (k, 3) each, and further directions to bound each along, both ways, shape (m, 3) each. In the plane
             pieces are segments, of two corners with z = 0.
+        unpack: Levels, a row a walk, from an array of ``Quantized`` on the host.
     """
 
     Quantized: type
@@ -50,6 +51,7 @@ class BoundsKind:
     merge: wp.Function
     overlaps_any: wp.Function
     bound_pieces: Callable[[list[np.ndarray], list[np.ndarray], wp.Device], object]
+    unpack: Callable[[np.ndarray], np.ndarray]
 
     @property
     def byte_count(self) -> int:

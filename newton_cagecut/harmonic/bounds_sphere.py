@@ -123,7 +123,7 @@ def make_sphere(dimension: int) -> BoundsKind:
         return result
 
     return BoundsKind(
-        Quantized, wp.vec4, PieceBoxes, empty, extend, quantize, dequantize, merge, overlaps_any, _bound_pieces
+        Quantized, wp.vec4, PieceBoxes, empty, extend, quantize, dequantize, merge, overlaps_any, _bound_pieces, np.copy
     )
 
 

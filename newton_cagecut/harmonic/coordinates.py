@@ -144,8 +144,9 @@ class HarmonicCoordinates:
 
     @property
     def bounds(self) -> np.ndarray:
-        """The cached bounds of the walks, quantised, a row a walk; a copy."""
-        return self._cache_of("bounds").bounds.numpy()[: self.point_count * self.walks].copy()
+        """The levels of the walks' quantised bounds, a row a walk; a copy."""
+        walker = self._cache_of("bounds")
+        return walker.bounds_kind.unpack(walker.bounds.numpy()[: self.point_count * self.walks])
 
     def memory(self) -> dict[str, int]:
         """Bytes of each part on the device."""
