@@ -9,7 +9,7 @@ import numpy as np
 import warp as wp
 
 from .bounds_kind import BoundsKind
-from .landing import KEY_MASK, Landings
+from .landing import KEY_MASK
 
 wp.set_module_options({"enable_backward": False})
 
@@ -32,7 +32,7 @@ def make_mark_kernel(bounds_kind: BoundsKind) -> wp.Kernel:
         walks: int,
         bounds: wp.array[bounds_kind.Quantized],
         pieces: bounds_kind.PieceBounds,
-        landings: Landings,
+        keys: wp.array[wp.int32],
         changed_keys: wp.array[wp.uint8],
         marks: wp.array[wp.uint8],
         touched: wp.array[wp.uint8],
@@ -40,15 +40,15 @@ def make_mark_kernel(bounds_kind: BoundsKind) -> wp.Kernel:
         """Sort a walk into the paper's three classes (section 5.2): walk again, evaluate again on its face, reuse."""
         walk = offset + wp.tid()
         mark = KEPT
-        on_changed_face = changed_keys[landings.key[walk] & KEY_MASK] != wp.uint8(0)
+        on_changed_face = changed_keys[keys[walk] & KEY_MASK] != wp.uint8(0)
         if bounds_kind.overlaps_any(bounds[walk], pieces):
             mark = REWALK
+            # Else it touches its point only if it then ends elsewhere, which the walk itself finds out.
+            if on_changed_face:
+                touched[walk // walks] = wp.uint8(1)
         elif on_changed_face:
-            mark = ON_FACE
+            mark = ON_FACE  # touches its point if its boundary value changes, which landing finds out
         marks[walk] = mark
-        # A walk that is walked again touches its point only if it then ends elsewhere, which the walk itself finds out.
-        if on_changed_face:
-            touched[walk // walks] = wp.uint8(1)
 
     return mark_walks
 

@@ -78,7 +78,7 @@ class HarmonicCoordinates:
         else:
             self.domain = Domain(cage, quads=quads, distance=distance, device=wp.get_device(device))
         self._cage = self.domain.cage
-        points = _checked_points(points)
+        points = _checked_points(points, self.domain.dimension)
         keys = self._checked_keys(point_keys, len(points))
         check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
         self._walker = Walker(
@@ -115,7 +115,7 @@ class HarmonicCoordinates:
     @property
     def gradients(self) -> np.ndarray:
         """The weights' gradients [1/m] of the points that have them, shape (gradient_count, cage.vertex_count, 3)."""
-        return self._walker.gradients.numpy()[:, : self.cage.vertex_count].copy()
+        return self._walker.gradients.numpy()[:, : self.cage.vertex_count, : self.domain.dimension].copy()
 
     @property
     def weights_array(self) -> wp.array:
@@ -140,7 +140,7 @@ class HarmonicCoordinates:
         """The cached landings: "key", "point", "face", "edge", "param", a row a walk; copies."""
         landings = self._cache_of("landings").landings
         count = self.point_count * self.walks
-        return {name: getattr(landings, name).numpy()[:count].copy() for name in LANDING_DTYPES}
+        return {name: getattr(landings, name).numpy()[:count].copy() for name in LANDING_DTYPES[self.domain.dimension]}
 
     @property
     def bounds(self) -> np.ndarray:
@@ -228,7 +228,7 @@ class HarmonicCoordinates:
                 there are more points than were reserved. Nothing has changed then.
         """
         walker = self._cache_of("set_points")
-        points = _checked_points(points)
+        points = _checked_points(points, self.domain.dimension)
         indices = self._checked_indices(indices, len(points))
         keys = self._checked_keys(point_keys, len(points))
         walker.require_points(int(indices.max(initial=-1)) + 1)
@@ -258,7 +258,7 @@ class HarmonicCoordinates:
             ValueError: A key is of no wall.
         """
         options = self._walker.options
-        points = _checked_points(points)
+        points = _checked_points(points, self.domain.dimension)
         self._checked_keys(point_keys, len(points), lowest=0)
         coordinates = HarmonicCoordinates(
             self.domain,
@@ -283,7 +283,7 @@ class HarmonicCoordinates:
             launch(
                 make_mark_kernel(kind),
                 walk_count,
-                [self.walks, walker.bounds, pieces, walker.landings, changed, marks, touched],
+                [self.walks, walker.bounds, pieces, walker.landings.key, changed, marks, touched],
                 device=device,
             )
             rewalk, on_face = gather(marks, int(REWALK)), gather(marks, int(ON_FACE))
@@ -291,10 +291,10 @@ class HarmonicCoordinates:
         stats.rewalked, stats.on_face = rewalk.size, on_face.size
         walker.walk(rewalk, stats, touched=touched)
         walker.land(rewalk, stats, part="rewalk")
-        walker.land(on_face, stats, part="on_face")
+        walker.land(on_face, stats, part="on_face", touched=touched)
         concerned = touched.numpy() != 0
         if walker.options.correction != "none":
-            concerned |= self.degrees == 0  # An affine correction is spread over all vertices of a component.
+            concerned |= self.degrees == 0  # An affine correction is spread over all vertices of a piece.
         walker.resolve(np.flatnonzero(concerned), stats)
 
     def _cache_of(self, wanted: str) -> Walker:
@@ -333,10 +333,10 @@ class HarmonicCoordinates:
         return indices
 
 
-def _checked_points(points: np.ndarray) -> np.ndarray:
+def _checked_points(points: np.ndarray, dimension: int) -> np.ndarray:
     points = np.asarray(points, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise ValueError(f"points must have the shape (n, 3), not {points.shape}")
+    if points.ndim != 2 or points.shape[1] != dimension:
+        raise ValueError(f"points must have the shape (n, {dimension}), not {points.shape}")
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
         raise ValueError(f"point {bad[0]} is not finite: {points[bad[0]]}")

@@ -38,3 +38,13 @@ class UnitFrame:
     def to_unit(self, points: np.ndarray) -> np.ndarray:
         """Map rest positions [m] to the unit frame, in float64."""
         return (np.asarray(points, dtype=np.float64) - self.center) / self.half_side
+
+    def to_space(self, points: np.ndarray) -> np.ndarray:
+        """Map rest positions [m] to the unit frame as float32 in space; those of 2D lie in the plane z = 0."""
+        return lifted(self.to_unit(points)).astype(np.float32)
+
+
+def lifted(vectors: np.ndarray) -> np.ndarray:
+    """Vectors with a third component, 0 for those of 2D; shape (..., 3)."""
+    missing = 3 - vectors.shape[-1]
+    return np.concatenate([vectors, np.zeros((*vectors.shape[:-1], missing))], axis=-1) if missing else vectors

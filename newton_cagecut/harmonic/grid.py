@@ -35,6 +35,7 @@ class GridCells:
 
     low: wp.vec3
     size: float
+    diagonal: float
     shape: wp.vec3i
     start: wp.array[wp.int32]
     items: wp.array[wp.int32]
@@ -90,7 +91,7 @@ def _measure_cells(
     best = float(1.0e30)
     for item in range(first, last):
         best = wp.min(best, _center_distance(triangles, parent.items[item], center))
-    reach = best + cells.size * wp.sqrt(3.0) + _MARGIN
+    reach = best + cells.diagonal + _MARGIN
     count = int(0)
     for item in range(first, last):
         if _center_distance(triangles, parent.items[item], center) <= reach:
@@ -104,7 +105,7 @@ def _fill_cells(offset: int, triangles: WallTriangles, parent: GridCells, cells:
     cell = offset + wp.tid()
     center = cell_center(cells, cell)
     parent_cell = cell_of(parent, center)
-    reach = nearest[cell] + cells.size * wp.sqrt(3.0) + _MARGIN
+    reach = nearest[cell] + cells.diagonal + _MARGIN
     slot = cells.start[cell]
     for item in range(parent.start[parent_cell], parent.start[parent_cell + 1]):
         if _center_distance(triangles, parent.items[item], center) <= reach:
@@ -134,7 +135,7 @@ def _is_candidate(triangles: WallTriangles, t: int, wall: int, cells: GridCells,
     The triangles of one wall are all as far from a point as their plane is, so the nearest of them is the one that is
     nearest within the plane. The pieces of a long cut would crowd the cells beside it otherwise.
     """
-    diagonal = cells.size * wp.sqrt(3.0)
+    diagonal = cells.diagonal
     if _center_distance(triangles, t, center) > reach.nearest + diagonal + _MARGIN:
         return False
     return triangles.wall[t] != wall or _lateral_distance(triangles, t, center) <= reach.lateral + diagonal + _LATERAL
@@ -150,7 +151,7 @@ def _reach_of_new(
     reach.nearest = nearest
     reach.lateral = -1.0
     lateral = float(1.0e30)
-    farthest = nearest + cells.size * wp.sqrt(3.0) + _MARGIN
+    farthest = nearest + cells.diagonal + _MARGIN
     for t in range(first_new, triangles.count):
         if wp.abs(plane_distance(triangles, t, center)) <= farthest + _MARGIN:  # most cells are out of reach
             distance = _center_distance(triangles, t, center)
@@ -284,12 +285,17 @@ def _levels(resolution: int) -> list[int]:
 
 
 def _uniform_cells(half_extents: np.ndarray, resolution: int, device: wp.context.Device) -> GridCells:
+    dimension = len(half_extents)
     pad = 1.0e-3
     size = 2.0 * (1.0 + pad) / resolution
+    low, shape = np.full(3, -0.5 * size), np.ones(3, dtype=int)  # of 2D: one layer around the plane z = 0
+    low[:dimension] = -(half_extents + pad)
+    shape[:dimension] = np.maximum(1, np.ceil(2.0 * (half_extents + pad) / size - 1e-9))
     cells = GridCells()
-    cells.low = wp.vec3(*(-(half_extents + pad)).tolist())
+    cells.low = wp.vec3(*low.tolist())
     cells.size = size
-    cells.shape = wp.vec3i(*np.maximum(1, np.ceil(2.0 * (half_extents + pad) / size - 1e-9)).astype(int).tolist())
+    cells.diagonal = size * dimension**0.5
+    cells.shape = wp.vec3i(*shape.tolist())
     cells.start = wp.zeros(1, dtype=wp.int32, device=device)
     cells.items = wp.zeros(1, dtype=wp.int32, device=device)
     return cells
@@ -306,7 +312,7 @@ def _single_cell(half_extents: np.ndarray, triangle_count: int, device: wp.conte
 def _cells_like(cells: GridCells, counts: wp.array) -> GridCells:
     """The same cells with empty lists of the given lengths."""
     result = GridCells()
-    result.low, result.size, result.shape = cells.low, cells.size, cells.shape
+    result.low, result.size, result.diagonal, result.shape = cells.low, cells.size, cells.diagonal, cells.shape
     result.start = wp.zeros(counts.size + 1, dtype=wp.int32, device=counts.device)
     wp.utils.array_scan(counts, result.start[1:], inclusive=True)
     result.items = wp.empty(int(result.start[-1:].numpy()[0]), dtype=wp.int32, device=counts.device)

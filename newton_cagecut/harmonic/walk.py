@@ -14,9 +14,9 @@ import warp as wp
 
 from .bounds_kind import BoundsKind
 from .grid import GridCells, nearest_in_grid
-from .landing import CAPPED, Landings
+from .landing import CAPPED, landing_type, point_functions
 from .points import QueryPoints
-from .random import direction_on_sphere
+from .random import make_direction
 from .walls import Nearest, WallTriangles, closest_point_on_triangle, nearest_of_all
 
 wp.set_module_options({"enable_backward": False})
@@ -43,15 +43,19 @@ def differs(a: wp.vec3, b: wp.vec3) -> bool:
 
 
 @cache
-def make_walk_kernel(*, distance: str, bounded: bool, bounds_kind: BoundsKind) -> wp.Kernel:
+def make_walk_kernel(*, dimension: int, distance: str, bounded: bool, bounds_kind: BoundsKind) -> wp.Kernel:
     """Make the kernel that walks.
 
     Args:
+        dimension: 3 for spheres, 2 for circles in the plane z = 0.
         distance: "grid" for the candidate grid, "all" for every wall.
         bounded: Whether to keep the walks' bounds; without, their code is left out.
         bounds_kind: Kind of the walks' bounds.
     """
     use_grid = distance == "grid"
+    Landings = landing_type(dimension)
+    to_space, from_space = point_functions(dimension)
+    direction = make_direction(dimension)
 
     @wp.kernel(enable_backward=False, module="unique")
     def walk_on_spheres(
@@ -79,7 +83,7 @@ def make_walk_kernel(*, distance: str, bounded: bool, bounds_kind: BoundsKind) -
         extents = bounds_kind.empty()
         if points.key[point] >= 0:
             landings.key[walk] = points.key[point]
-            landings.point[walk] = x
+            landings.point[walk] = from_space(x)
             if wp.static(bounded):
                 bounds[walk] = bounds_kind.quantize(extents)
             return
@@ -104,7 +108,7 @@ def make_walk_kernel(*, distance: str, bounded: bool, bounds_kind: BoundsKind) -
             if radius < wp.where(step == 0, _ON_WALL, epsilon) or step >= max_steps:
                 walking = False
             else:
-                x += radius * direction_on_sphere(seed, wp.uint32(point), number, wp.uint32(step))
+                x += radius * direction(seed, wp.uint32(point), number, wp.uint32(step))
                 step += 1
                 # Search from the wall that was nearest before: most others are then rejected at once.
                 nearest.point = closest_point_on_triangle(triangles, nearest.triangle, x)
@@ -114,10 +118,10 @@ def make_walk_kernel(*, distance: str, bounded: bool, bounds_kind: BoundsKind) -
             key = key | CAPPED
         if wp.static(bounded):
             # A walk that ends where it did before leaves its point's weights alone.
-            if landings.key[walk] != key or differs(landings.point[walk], nearest.point):
+            if landings.key[walk] != key or differs(to_space(landings.point[walk]), nearest.point):
                 touched[point] = wp.uint8(1)
         landings.key[walk] = key
-        landings.point[walk] = nearest.point
+        landings.point[walk] = from_space(nearest.point)
         if wp.static(bounded):
             bounds[walk] = bounds_kind.quantize(extents)
 

@@ -1,10 +1,12 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Walls: the triangles that stop walks, append-only.
+"""Walls: the triangles, in 2D segments, that stop walks, append-only.
 
 The cage's faces are walls from the start; every swept piece of a cut is appended (design: "walls are append-only,
 faces change"). A triangle knows its wall; a wall is a plane with one side (a face of the cage) or two (a cut).
+
+In 2D everything lies in the plane z = 0, and a segment is a triangle of which two corners are the same.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from .frame import UnitFrame
+from .frame import UnitFrame, lifted
 
 wp.set_module_options({"enable_backward": False})
 
@@ -174,13 +176,13 @@ class Walls:
         """Append triangles and return their indices.
 
         Args:
-            corners: Rest positions [m], shape (t, 3, 3).
+            corners: Rest positions [m], shape (t, dimension, dimension).
             walls: Wall of each triangle, shape (t,).
-            normals: The wall's unit normal for each triangle, shape (t, 3).
+            normals: The wall's unit normal for each triangle, shape (t, dimension).
             two_sided: Whether walks land on both sides, shape (t,).
         """
         first = self.triangle_count
-        rows = _triangle_rows(self.frame.to_unit(corners), normals)
+        rows = _wall_rows(self.frame.to_unit(corners), normals)
         rows["wall"] = walls.astype(np.int32)
         rows["two_sided"] = two_sided.astype(np.int32)
         self._rows = {
@@ -212,18 +214,33 @@ class Walls:
         return sum(rows.nbytes for rows in self._rows.values())
 
 
-def _triangle_rows(corners: np.ndarray, normals: np.ndarray) -> dict[str, np.ndarray]:
-    """Corners, edge normals and normals in float32, from unit-frame corners (t, 3, 3) in float64.
-
-    Winding is made to agree with the wall's normal, so that the edge normals point inward.
-    """
-    area = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), normals)
-    corners = np.where((area < 0.0)[:, None, None], corners[:, ::-1], corners)
-    rows = {"normal": normals.astype(np.float32)}
+def _wall_rows(corners: np.ndarray, normals: np.ndarray) -> dict[str, np.ndarray]:
+    """Corners, edge normals and normals in float32, from unit-frame corners in float64."""
+    if corners.shape[1] == 2:
+        inward = _segment_ends(corners)
+        corners = lifted(corners[:, [0, 1, 0]])
+    else:
+        corners = _wound(corners, normals)
+        inward = [_unit(np.cross(normals, corners[:, (k + 1) % 3] - corners[:, k])) for k in range(3)]
+    rows = {"normal": lifted(normals).astype(np.float32)}
     for k in range(3):
-        edge = corners[:, (k + 1) % 3] - corners[:, k]
-        inward = np.cross(normals, edge)
-        length = np.linalg.norm(inward, axis=1, keepdims=True)
         rows[f"corner_{k}"] = corners[:, k].astype(np.float32)
-        rows[f"inward_{k}"] = (inward / np.where(length > 0.0, length, 1.0)).astype(np.float32)
+        rows[f"inward_{k}"] = inward[k].astype(np.float32)
     return rows
+
+
+def _segment_ends(corners: np.ndarray) -> list[np.ndarray]:
+    """Directions into segments from their ends, which bound them as edges bound a triangle."""
+    along = lifted(_unit(corners[:, 1] - corners[:, 0]))
+    return [np.zeros_like(along), -along, along]
+
+
+def _wound(corners: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Triangles of which the winding agrees with the wall's normal, so that edge normals point inward."""
+    area = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), normals)
+    return np.where((area < 0.0)[:, None, None], corners[:, ::-1], corners)
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors / np.where(length > 0.0, length, 1.0)
