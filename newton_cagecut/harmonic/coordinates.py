@@ -11,7 +11,7 @@ import numpy as np
 import warp as wp
 
 from ..cage import Cage, CageEdit, check_inside
-from .compact import ON_FACE, REWALK, gather, make_mark_kernel
+from .compact import ON_FACE, RESUME, REWALK, gather, make_mark_kernel
 from .domain import Domain, DomainChange
 from .landing import LANDING_DTYPES
 from .launch import launch
@@ -154,16 +154,17 @@ class HarmonicCoordinates:
     def update(self, edit: CageEdit) -> UpdateStats:
         """Bring the weights up to date with an edit of the cage.
 
-        Only the walks that the new piece of cut may have met are walked again, only landings on changed faces are
-        evaluated again, only points with either are resolved again (paper, section 5.2). The result equals that of
-        ``recompute()`` bit for bit.
+        Only the walks that the new piece of wall may have met are walked again, only landings on changed faces are
+        evaluated again, only points with either are resolved again (paper, section 5.2). Where an edit has moved a face
+        outward, the walks that landed on it go on from there (section 8). The result equals that of ``recompute()`` bit
+        for bit.
 
         Args:
             edit: The next edit of the cage that the coordinates hold.
 
         Raises:
-            ValueError: There is no walk cache, the edit does not start from the present cage, or the cage has more
-                vertices than were reserved. Nothing has changed then.
+            ValueError: There is no walk cache, the edit does not start from the present cage, an obstacle covers
+                points, the cage has too many vertices or extensions. Nothing has changed then.
         """
         walker = self._cache_of("update")
         if edit.before is not self._cage:
@@ -171,10 +172,12 @@ class HarmonicCoordinates:
                 "update: the edit starts from another cage than the coordinates hold; pass every edit, in order"
             )
         walker.require_vertices(edit.cage.vertex_count)
+        walker.require_inside(edit)
         stats = self._new_stats()
         with stats.time("walls", self.domain.device):
             change = self.domain.apply(edit)
             walker.grow_vertices(edit.cage.vertex_count)
+            walker.free_points(edit.retired_walls)
             if change.regrouped:
                 walker.group_points()
         self._cage = edit.cage
@@ -279,18 +282,21 @@ class HarmonicCoordinates:
             pieces = kind.bound_pieces(change.polygons, change.directions, device)
             marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
             touched = wp.zeros(self.point_count, dtype=wp.uint8, device=device)
-            changed = wp.array(change.changed_keys.astype(np.uint8), dtype=wp.uint8, device=device)
+            changes = wp.array(change.key_changes, dtype=wp.uint8, device=device)
             launch(
                 make_mark_kernel(kind),
                 walk_count,
-                [self.walks, walker.bounds, pieces, walker.landings.key, changed, marks, touched],
+                [self.walks, walker.bounds, pieces, walker.points, walker.landings.key, changes, marks, touched],
                 device=device,
             )
-            rewalk, on_face = gather(marks, int(REWALK)), gather(marks, int(ON_FACE))
+            rewalk, on_face, resume = (gather(marks, int(mark)) for mark in (REWALK, ON_FACE, RESUME))
         stats.checked = walk_count
-        stats.rewalked, stats.on_face = rewalk.size, on_face.size
+        stats.rewalked, stats.on_face, stats.resumed = rewalk.size, on_face.size, resume.size
         walker.walk(rewalk, stats, touched=touched)
         walker.land(rewalk, stats, part="rewalk")
+        if resume.size:
+            walker.walk(resume, stats, touched=touched, resumed=True)
+            walker.land(resume, stats, part="resume")
         walker.land(on_face, stats, part="on_face", touched=touched)
         concerned = touched.numpy() != 0
         if walker.options.correction != "none":

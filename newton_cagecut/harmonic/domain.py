@@ -11,11 +11,13 @@ import numpy as np
 import warp as wp
 
 from ..cage import Cage, CageEdit
+from .compact import CHANGED_KEY, RETIRED_KEY, UNCHANGED_KEY
 from .faces import FaceTables, build_face_tables
 from .frame import UnitFrame, lifted
 from .grid import CandidateGrid
 from .launch import launch
-from .walls import Walls, measure_distance
+from .nearest import measure_distance
+from .walls import MOST_GATES, Walls
 
 
 @dataclass(frozen=True)
@@ -25,13 +27,13 @@ class DomainChange:
     Args:
         polygons: New pieces of wall in the unit frame, shape (k, 3) each.
         directions: Directions along which each of them is thin, shape (2, 3) each.
-        changed_keys: Whether landings with key 2 * wall + side need their face again, shape (2 * wall_count,).
+        key_changes: What becomes of landings with key 2 * wall + side, shape (2 * wall_count,); see ``compact.py``.
         regrouped: Whether the pieces are other ones than before.
     """
 
     polygons: list[np.ndarray]
     directions: list[np.ndarray]
-    changed_keys: np.ndarray
+    key_changes: np.ndarray
     regrouped: bool
 
 
@@ -78,6 +80,11 @@ class Domain:
         return self.cage.dimension
 
     @property
+    def gated(self) -> bool:
+        """Whether walls have become gates."""
+        return self.walls.gate_count > 0
+
+    @property
     def has_nested_faces(self) -> bool:
         """Whether any face needs a nested walk."""
         return self.faces.nested_count > 0
@@ -92,14 +99,14 @@ class Domain:
         """Distance of rest positions [m] to the nearest wall [m], shape (n,)."""
         unit = wp.array(self.frame.to_space(points), dtype=wp.vec3, device=self.device)
         distance = wp.empty(len(points), dtype=float, device=self.device)
-        launch(measure_distance, len(points), [self.walls.data, unit, distance], device=self.device)
+        launch(measure_distance, len(points), [self.walls.data, self.grid.cells, unit, distance], device=self.device)
         return distance.numpy() * self.frame.half_side
 
     def apply(self, edit: CageEdit) -> DomainChange:
         """Append an edit's walls and take over its faces; the same edit a second time changes nothing.
 
         Raises:
-            ValueError: The edit starts from another cage than the present one.
+            ValueError: The edit starts from another cage than the present one, or walls were retired too often.
         """
         if self._last is not None and self._last[0] is edit:
             return self._last[1]
@@ -107,11 +114,20 @@ class Domain:
             raise ValueError(
                 "update: the edit starts from another cage than the one held; pass every edit of a cut, in order"
             )
-        for wall in np.unique(edit.swept_simplex_wall).tolist():
-            corners = edit.swept_simplices[edit.swept_simplex_wall == wall]
-            first = self.walls.triangle_count
-            self._append(corners, np.full(len(corners), wall), edit.cage)
-            self.grid.merge(first)
+        if self.walls.gate_count + len(edit.retired_walls) > MOST_GATES:
+            raise ValueError(
+                f"the cage has been extended {MOST_GATES} times, more than walks can tell apart; make new coordinates"
+            )
+        if len(edit.retired_walls):
+            self._append(edit.swept_simplices, edit.swept_simplex_wall, edit.cage)
+            self.walls.retire(edit.retired_walls)
+            self.grid.rebuild()
+        else:
+            for wall in np.unique(edit.swept_simplex_wall).tolist():
+                corners = edit.swept_simplices[edit.swept_simplex_wall == wall]
+                first = self.walls.triangle_count
+                self._append(corners, np.full(len(corners), wall), edit.cage)
+                self.grid.merge(first)
         self.faces_before = self.faces
         self.faces = build_face_tables(edit.cage, self.frame, quads=self.quads, device=self.device)
         change = self._change(edit)
@@ -149,7 +165,9 @@ class Domain:
         if regrouped:
             changed.reshape(-1)[_ambiguous_keys(edit.cage)] = True
         changed |= changed.any(axis=1, keepdims=True)
-        return DomainChange(polygons, along, changed.reshape(-1), regrouped)
+        changes = np.where(changed, np.uint8(CHANGED_KEY), np.uint8(UNCHANGED_KEY))
+        changes[edit.retired_walls] = np.uint8(RETIRED_KEY)
+        return DomainChange(polygons, along, changes.reshape(-1), regrouped)
 
 
 def _directions(polygon: np.ndarray, normal: np.ndarray) -> np.ndarray:

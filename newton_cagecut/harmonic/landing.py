@@ -15,7 +15,10 @@ import warp as wp
 CAPPED = wp.constant(wp.int32(1 << 30))
 """Set in a landing's key when its walk was stopped by the cap on steps."""
 
-KEY_MASK = wp.constant(wp.int32((1 << 30) - 1))
+PASSED = wp.constant(wp.int32(1 << 29))
+"""Set in a landing's key when its walk has come through a gate."""
+
+KEY_MASK = wp.constant(wp.int32((1 << 29) - 1))
 
 NOWHERE = wp.constant(wp.int32(-1))
 """Edge of a landing that needs no nested walk."""

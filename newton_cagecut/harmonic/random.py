@@ -15,6 +15,9 @@ import warp as wp
 NESTED_STREAM = wp.constant(wp.uint32(0x9E3779B9))
 """Added to the seed for the walks on a face, so that they share no number with the walks in the volume."""
 
+GATE_STREAM = wp.constant(wp.uint32(0x85EBCA6B))
+"""Added to the seed, times a gate's number and one, for the part of a walk behind that gate."""
+
 _UNIT = wp.constant(1.0 / 16777216.0)
 _TWO_PI = wp.constant(6.283185307179586)
 

@@ -10,6 +10,7 @@ from collections.abc import Callable
 import numpy as np
 import warp as wp
 
+from ..cage import CageEdit
 from .bounds import make_bounds
 from .compact import count_capped
 from .domain import Domain
@@ -77,6 +78,18 @@ class Walker:
                 f"the cage has {vertex_count} vertices, room was reserved for {capacity}: raise vertex_capacity"
             )
 
+    def require_inside(self, edit: CageEdit) -> None:
+        """Refuse an obstacle that covers points."""
+        if edit.cage.volume >= edit.before.volume or edit.wall >= 0:
+            return
+        inner = np.flatnonzero(self.points.key.numpy()[: self.point_count] < 0)
+        covered = inner[~edit.cage.contains(self._rest[inner])]
+        if len(covered):
+            raise ValueError(
+                f"the obstacle covers {len(covered)} of {self.point_count} points, such as point {covered[0]} at "
+                f"{self._rest[covered[0]].tolist()}; move the obstacle, or remove the points first"
+            )
+
     def require_points(self, point_count: int) -> None:
         """Refuse points that do not fit the capacity."""
         if point_count > self.point_capacity:
@@ -110,6 +123,11 @@ class Walker:
         inner = np.flatnonzero(self.points.key.numpy()[: self.point_count] < 0)
         _scatter(self.points.piece, inner, self.domain.pieces_of(self._rest[inner]))
 
+    def free_points(self, walls: np.ndarray) -> None:
+        """Points on walls that have retired are inside from now on."""
+        freed = np.flatnonzero(np.isin(self.points.key.numpy()[: self.point_count] // 2, walls))
+        self.place(freed, self._rest[freed], np.full(len(freed), -1, dtype=np.int32))
+
     def run_all(self, stats: UpdateStats, *, progress: Callable[[float], None] | None = None) -> None:
         """Walk, land and resolve every point, in batches where walks are not kept."""
         walks = self.options.walks
@@ -138,20 +156,27 @@ class Walker:
         first_point: int = 0,
         count: int | None = None,
         touched: wp.array | None = None,
+        resumed: bool = False,
         progress: Callable[[float], None] | None = None,
     ) -> None:
-        """Walk the walks listed in ``work``, or the first ``count`` where it is empty; mark points that it touched."""
+        """Walk the walks listed in ``work``, or the first ``count`` where it is empty; mark points that it touched.
+
+        Resumed ones go on from the gates on which they landed.
+        """
         options, domain = self.options, self.domain
         kernel = make_walk_kernel(
             dimension=domain.dimension,
             distance=domain.distance,
             bounded=self.cuttable,
             bounds_kind=self.bounds_kind,
+            gated=domain.gated,
+            resumed=resumed,
         )
         inputs = [work, options.walks, first_point * options.walks, wp.uint32(options.seed), self.points]
-        inputs += [domain.walls.data, domain.grid.cells, options.epsilon, options.max_steps]
+        inputs += [domain.walls.data, domain.grid.cells, domain.walls.gate_of_wall()]
+        inputs += [options.epsilon, options.max_steps]
         inputs += [self.landings, self.bounds, self._touched if touched is None else touched]
-        with stats.time("rewalk", domain.device):
+        with stats.time("resume" if resumed else "rewalk", domain.device):
             launch(kernel, work.size if count is None else count, inputs, device=domain.device, progress=progress)
 
     def land(
