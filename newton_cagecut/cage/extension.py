@@ -114,18 +114,23 @@ def _checked(cage: Cage, face: int, distance: float) -> tuple[int, float]:
             f"a face moves outward by a finite distance beyond the cage's tolerance of {cage.length_tolerance:.3g} m, "
             f"got {distance:g} m; put an obstacle in or cut to take from the body"
         )
-    wall, loop = int(cage.face_wall[face]), _loop(cage.mesh, face)
+    _check_uncut(cage, face)
+    return face, distance
+
+
+def _check_uncut(cage: Cage, face: int) -> None:
+    """Check that a face is alone on its wall, without slits, so that the wall can retire."""
+    wall = cage.face_wall[face]
     if cage.walls[wall].two_sided:
         raise ValueError(f"face {face} of the cage is a side of a cut, of which the wall stays; choose another face")
-    if len(np.unique(loop)) < len(loop):
-        raise ValueError(f"a cut has slit face {face} of the cage; move it before it is cut, or choose another face")
     others = np.setdiff1d(np.flatnonzero(cage.face_wall == wall), face)
     if len(others):
         raise ValueError(
             f"a cut has split face {face} of the cage from face {others[0]}, and their wall cannot retire in part; "
             "move it before it is cut, or choose another face"
         )
-    return face, distance
+    if any(cage.walls[cage.face_wall[neighbour]].two_sided for neighbour in _neighbours(cage.mesh, face)):
+        raise ValueError(f"a cut has slit face {face} of the cage; move it before it is cut, or choose another face")
 
 
 def _loop(mesh: PolygonMesh, face: int) -> np.ndarray:
