@@ -214,7 +214,8 @@ def test_bad_indices_and_numbers():
     _refused("no faces", vertices, [])
     _refused("face 0 of the cage must be a sequence of integers", vertices, [(0.0, 1.0, 2.0)], TypeError)
     _refused("must be numbers", [["a", "b", "c"]], faces, TypeError)
-    _refused(r"shape \(vertex_count, 3\), got \(4, 2\)", vertices[:, :2], faces)
+    _refused(r"shape \(vertex_count, 3\), or \(vertex_count, 2\), got \(4, 1\)", vertices[:, :1], faces)
+    _refused("face 0 of the cage has 3 vertices; a face of a plane cage is a segment", vertices[:, :2], faces)
     vertices[2, 1] = np.nan
     _refused("vertex 2 of the cage is not finite", vertices, faces)
 

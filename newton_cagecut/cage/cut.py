@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Progressive cuts of cages.
 
-Section 5.2 of the paper. A cut is a pure function: (cage before the cut, blade, depth) -> cage, with the turns of the
-blade, each at its depth, as a part of the blade.
+Sections 4 and 5.2 of the paper. A cut is a pure function: (cage before the cut, blade, depth) -> cage, with the turns
+of the blade, each at its depth, as a part of the blade.
 """
 
 from __future__ import annotations
@@ -50,11 +50,17 @@ class Cut:
 
         Raises:
             TypeError: If the arguments are not a cage and a blade.
+            ValueError: If the blade is not of the cage's dimension, or starts inside the body where it may not.
         """
         if not isinstance(cage, Cage):
             raise TypeError(f"cage must be a Cage, got {type(cage).__name__}")
         if not isinstance(blade, Blade):
             raise TypeError(f"blade must be a Blade, got {type(blade).__name__}")
+        if blade.dimension != cage.dimension:
+            raise ValueError(
+                f"the cage is of dimension {cage.dimension} and the blade of dimension {blade.dimension}; give a blade "
+                f"whose vectors have {cage.dimension} numbers"
+            )
         self.base = cage
         """The cage before the cut."""
         self.depth = 0.0
@@ -133,23 +139,24 @@ class Cut:
         return edit
 
     def turn(self, direction: np.ndarray) -> None:
-        """Turn the blade about its present front line; further steps open a further wall from there.
+        """Turn the blade about its present front; further steps open a further wall from there.
 
         Args:
-            direction: Direction in which the blade moves from now on, of any length, not along the edge, shape (3,).
+            direction: Direction in which the blade moves from now on, of any length, not along the edge, shape
+                (dimension,).
 
         Raises:
-            TypeError: If the direction is not three numbers.
+            TypeError: If the direction is not as many numbers as the space has dimensions.
             ValueError: If the direction is not finite, zero, along the edge or back into the cut, or the cut is
                 complete. Nothing has changed then.
         """
         if self.complete:
             raise ValueError("the cut is complete: there is no front to turn about; begin a new cut")
         plane = self._front_plane()
-        blade = Blade(plane.origin, plane.edge, direction)
-        if np.dot(_across(blade.direction, plane.edge), _across(plane.direction, plane.edge)) < _LEAST_TURN_COSINE:
+        turned = plane.towards(direction)
+        if np.dot(turned.across, plane.across) < _LEAST_TURN_COSINE:
             raise ValueError("the blade would turn back into its own cut; turn it by less than 170 degrees")
-        self._go_on(self.cage, BladePlane.of(blade))
+        self._go_on(self.cage, turned)
 
     def resume(self, cage: Cage) -> None:
         """Go on in a cage that other cuts have changed since the last step.
@@ -183,7 +190,7 @@ class Cut:
 
     def _go_on(self, cage: Cage, plane: BladePlane) -> None:
         """Begin a strip at the present front, in place of one that was begun here and not opened."""
-        if self._blade.window is not None:
+        if self._blade.window is not None and self.base.dimension == 3:
             raise ValueError(
                 "a knife of finite width, or one that starts inside, neither turns nor goes on after another cut; "
                 "begin a new cut"
@@ -247,9 +254,3 @@ def _find_hinge(cage: Cage, wall: int | None, plane: BladePlane) -> Hinge:
         used[mesh.face_vertex[key == 2 * wall + side]] = True
         on_front &= used
     return Hinge.of(mesh, cage.face_key, wall, on_front)
-
-
-def _across(direction: np.ndarray, edge: np.ndarray) -> np.ndarray:
-    """The part of a direction across an edge, of unit length."""
-    across = direction - (direction @ edge) * edge
-    return across / np.linalg.norm(across)

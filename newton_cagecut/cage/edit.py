@@ -30,13 +30,16 @@ class CageEdit:
     cage: Cage
     """The cage after the step."""
     swept: tuple[np.ndarray, ...]
-    """Polygons of new wall, counterclockwise about their wall's normal, each of shape (corner_count, 3) [m]."""
+    """Polygons of new wall, counterclockwise about their wall's normal, each of shape (corner_count, 3) [m].
+
+    In 2D they are segments with their wall's normal on their right, each of shape (2, 2).
+    """
     swept_wall: np.ndarray
     """Wall of each of them, ascending, shape (polygon_count,)."""
     swept_simplices: np.ndarray
-    """The same as triangles, shape (simplex_count, 3, 3) [m]."""
+    """The same as triangles, or as the segments that they are, shape (simplex_count, dimension, dimension) [m]."""
     swept_simplex_wall: np.ndarray
-    """Wall of each triangle, ascending, shape (simplex_count,)."""
+    """Wall of each simplex, ascending, shape (simplex_count,)."""
     created: np.ndarray
     """Ids of the vertices that are new, shape (created_count,)."""
     moved: np.ndarray
@@ -44,8 +47,8 @@ class CageEdit:
     source_faces: np.ndarray
     """For the created, then the moved vertices: a face of ``before`` that holds their position, shape (count,).
 
-    It is -1 for those inside the body, at the corners of the front of a knife of finite width and on an obstacle, and
-    for those outside of it, where a face has moved outward.
+    It is -1 for those inside the body: at the corners of the front of a knife of finite width, at every tip in 2D and
+    on an obstacle; and for those outside of it, where a face has moved outward.
     """
     retired_walls: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     """Walls that bound the cage no longer, ascending, shape (retired_count,); no face of ``cage`` is on them."""

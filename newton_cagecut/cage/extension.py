@@ -140,7 +140,7 @@ def _loop(mesh: PolygonMesh, face: int) -> np.ndarray:
 def _neighbours(mesh: PolygonMesh, face: int) -> np.ndarray:
     """The face next to each side face that an extrusion would add, shape (side_count,)."""
     begin, end = mesh.face_start[face : face + 2]
-    if mesh.vertices.shape[1] == 3:
+    if mesh.dimension == 3:
         return mesh.face[mesh.twin[begin:end]]
     segments, (first, last) = mesh.face_vertex.reshape(-1, 2), mesh.face_vertex[begin:end]
     return np.concatenate([np.flatnonzero(segments[:, 1] == first), np.flatnonzero(segments[:, 0] == last)])

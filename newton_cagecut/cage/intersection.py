@@ -39,7 +39,7 @@ def check_simple_faces(mesh: PolygonMesh, corner: np.ndarray, tolerance: float) 
         step = max(1, _CHUNK // len(i))
         for begin in range(0, len(faces), step):
             block = slice(begin, begin + step)
-            meet = _segments_meet(start[block, i], end[block, i], start[block, j], end[block, j], tolerance)
+            meet = segments_meet(start[block, i], end[block, i], start[block, j], end[block, j], tolerance)
             bad, pair = np.nonzero(meet)
             if len(bad):
                 face = faces[begin + bad[0]]
@@ -50,8 +50,16 @@ def check_simple_faces(mesh: PolygonMesh, corner: np.ndarray, tolerance: float) 
                 )
 
 
-def _segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, tolerance: float) -> np.ndarray:
-    """Whether closed segments a-b and c-d come within the tolerance by crossing, shape (...,)."""
+def segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, tolerance: float) -> np.ndarray:
+    """Whether closed segments a-b and c-d in the plane cross or touch within the tolerance, shape (...,).
+
+    Args:
+        a: Starts of the first segments, shape (..., 2) [m].
+        b: Ends of the first segments, shape (..., 2) [m].
+        c: Starts of the second segments, shape (..., 2) [m].
+        d: Ends of the second segments, shape (..., 2) [m].
+        tolerance: Length below which two things coincide [m].
+    """
 
     def side(p, q, r):
         u, v = q - p, r - p
@@ -181,9 +189,9 @@ def check_nesting(vertices: np.ndarray, component: np.ndarray, volumes: np.ndarr
     """Check that bodies are side by side and cavities inside a body.
 
     Args:
-        vertices: Positions, shape (vertex_count, 3) [m].
+        vertices: Positions, shape (vertex_count, dimension) [m].
         component: Component of each vertex, shape (vertex_count,).
-        volumes: Volume of each component, negative for a cavity, shape (component_count,) [m^3].
+        volumes: Volume, in 2D area, of each component, negative for a cavity, shape (component_count,) [m^d].
         winding: Function of points that gives their winding numbers about each component.
 
     Raises:
@@ -198,7 +206,8 @@ def check_nesting(vertices: np.ndarray, component: np.ndarray, volumes: np.ndarr
     bad = np.flatnonzero(around != np.where(volumes < 0.0, 1.0, 0.0))
     if len(bad):
         what = "inside out" if volumes[bad[0]] < 0.0 else "inside another one"
+        size = "area" if vertices.shape[1] == 2 else "volume"
         raise ValueError(
-            f"the component of vertex {first[bad[0]]} of the cage (volume {volumes[bad[0]]:.6g}) lies {what}; "
+            f"the component of vertex {first[bad[0]]} of the cage ({size} {volumes[bad[0]]:.6g}) lies {what}; "
             "reverse its faces, move it or remove it"
         )
