@@ -76,7 +76,12 @@ class _Player:
             return False
         cut = self.cuts[self.rng.integers(len(self.cuts))]
         if cut.cage is not self.cage:
-            cut.resume(self.cage)
+            try:
+                cut.resume(self.cage)
+            except ValueError as error:
+                if "has grown across the front" in str(error) and {"extrude", "move_face"} & set(self.done):
+                    return False
+                raise
         return self._advance(cut)
 
     def _advance(self, cut: Cut) -> bool:
