@@ -12,12 +12,18 @@ from __future__ import annotations
 
 from functools import cache
 
+import numpy as np
+
 from .bounds_dop import make_dop
 from .bounds_kind import BoundsKind
 from .bounds_sphere import make_sphere
 
 BOUNDS = ("dop18", "dop26", "aabb", "sphere")
 """The kinds that there are."""
+
+_SIDES = np.eye(3)
+_DIAGONALS = np.array([[1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]], dtype=np.float64)
+_CORNERS = np.array([[1, 1, 1], [1, 1, -1], [1, -1, 1], [1, -1, -1]], dtype=np.float64)
 
 
 def make_bounds(kind: str, dimension: int) -> BoundsKind:
@@ -39,10 +45,12 @@ def make_bounds(kind: str, dimension: int) -> BoundsKind:
 def _make(kind: str, dimension: int) -> BoundsKind:
     if kind == "sphere":
         return make_sphere(dimension)
+    sides, diagonals = (_SIDES[:2], _DIAGONALS[:2]) if dimension == 2 else (_SIDES, _DIAGONALS)
     if kind == "aabb":
-        return make_dop(dimension=dimension, bits=16, diagonals=False)
+        return make_dop(sides, dimension, 16)
     if kind == "dop18":
-        return make_dop(dimension=dimension, bits=16, diagonals=True)
+        return make_dop(np.concatenate([sides, diagonals]), dimension, 16)
     # Three planes a word, so as many bytes as the 18-DOP: on starfish cuts 1 to 3 % more walks are flagged than at 16
-    # bits, while 8 bits flag 5 to 13 % more. The factors let the unit frame's box fill the range along every axis.
-    return make_dop(dimension=dimension, bits=10, side=2.0, diagonals=True, corner=2.0 / 3.0)
+    # bits, while 8 bits flag 5 to 13 % more. The axes are scaled so that the unit frame's box fills the range on each.
+    axes = np.concatenate([2.0 * sides, diagonals, _CORNERS * (2.0 / 3.0)])
+    return make_dop(axes, dimension, 10)

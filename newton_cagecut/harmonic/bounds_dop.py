@@ -13,87 +13,52 @@ import numpy as np
 import warp as wp
 
 from .bounds_kind import RANGE, ROUNDING, UNBOUNDED, BoundsKind
+from .bounds_levels import make_layout
 
 wp.set_module_options({"enable_backward": False})
 
 
-_MARGIN = 1.0e-5
-"""Added around pieces: more than float32 rounds off where they are compared with walks."""
-
-
 @wp.struct
 class PieceSlabs:
-    """Bounds of new pieces of wall: levels of the DOP's planes, and extents along further directions.
+    """Bounds of new pieces of wall, a row each: the DOP's planes, and extents along further directions.
 
-    ``level`` has the 2 n levels of one piece after those of another: a walk may meet it only if, for each axis k of n,
-    the walk's low is at most level k and its negated high at most level n + k. Direction m of piece i is the sum over a
-    of weight[i, d m + a] times the normal of half_space[i, d m + a], in dimension d; ``low[i, m]`` is the piece's least
-    coordinate along it.
+    ``limit`` has the last level of each of the DOP's half-spaces that meets the piece, the lows along the axes, then
+    the highs; ``order`` lists them, those that most walks fail first. ``first_component`` and ``first_limit`` are a
+    half-space for all pieces together. Direction m of piece i is the sum over a of
+    weight[i, d m + a] times the normal of half-space[i, d m + a], with the dimension d; ``low[i, m]`` is the piece's
+    least coordinate along it.
     """
 
-    level: wp.array[wp.int32]
+    limit: wp.array2d[wp.int32]
+    order: wp.array2d[wp.int32]
     half_space: wp.array2d[wp.int32]
     weight: wp.array2d[float]
     low: wp.array2d[float]
+    first_component: int
+    first_limit: int
     count: int
 
 
-def make_dop(*, dimension: int, bits: int, side: float = 1.0, diagonals: bool, corner: float = 0.0) -> BoundsKind:
-    """Make the DOP of some of the axes x, x + y and x + y + z, and all that are like them.
+def make_dop(axes: np.ndarray, dimension: int, bits: int) -> BoundsKind:
+    """Make the DOP of some axes.
 
     Args:
+        axes: Axes, of any lengths, along which the unit frame's box lies within the range; shape (axis_count, 3).
         dimension: 2 or 3.
-        bits: Bits of a quantised plane; as many planes as fit share a word of 32.
-        side: Factor of the axes like x.
-        diagonals: Whether there are axes like x + y.
-        corner: Factor of the axes like x + y + z; 0 for none.
+        bits: Bits of a quantised plane; see ``make_layout``.
     """
-    axes = _axes(dimension, side, diagonals, corner)
     axis_count = len(axes)
     plane_count = 2 * axis_count
-    word_count = -(-plane_count // (32 // bits))
+    layout = make_layout(plane_count, bits)
+    Quantized, level_of, level_at, add_level = layout.Quantized, layout.level_of, layout.level_at, layout.add_level
+    word_type = layout.word_type
     highest_level = (1 << bits) - 1
     quantum = 2.0 * RANGE / highest_level
     # Planes are moved outward by one of the fine levels before they are rounded: far more than float32 rounds off.
     slack = min(1.0, 2.0 * RANGE / 65535.0 / quantum)
+    axis_matrix = wp.types.matrix(shape=(axis_count, 3), dtype=float)(*axes.reshape(-1).tolist())
     axis_lengths = wp.types.vector(length=axis_count, dtype=float)(*np.linalg.norm(axes, axis=1).tolist())
-    Values = wp.types.vector(length=axis_count, dtype=float)
     Extents = wp.types.vector(length=plane_count, dtype=float)
-    Quantized = wp.types.vector(length=word_count, dtype=wp.uint32)
-
-    @wp.func
-    def along_axes(x: wp.vec3) -> Values:
-        """Coordinates of a point along the axes, in the order of ``_axes``; without a product where there is none."""
-        values = Values()
-        for k in range(wp.static(dimension)):
-            values[k] = wp.static(side) * x[k]
-        if wp.static(diagonals):
-            values[wp.static(dimension)] = x[0] + x[1]
-            values[wp.static(dimension + 1)] = x[0] - x[1]
-            if wp.static(dimension == 3):
-                values[5] = x[0] + x[2]
-                values[6] = x[0] - x[2]
-                values[7] = x[1] + x[2]
-                values[8] = x[1] - x[2]
-        if wp.static(corner > 0.0):
-            values[9] = wp.static(corner) * (x[0] + x[1] + x[2])
-            values[10] = wp.static(corner) * (x[0] + x[1] - x[2])
-            values[11] = wp.static(corner) * (x[0] - x[1] + x[2])
-            values[12] = wp.static(corner) * (x[0] - x[1] - x[2])
-        return values
-
-    @wp.func
-    def level_of(bounds: Quantized, k: int) -> int:
-        """Level of plane ``k``: word ``k`` modulo the number of words holds it."""
-        shift = wp.uint32(wp.static(bits) * (k // wp.static(word_count)))
-        return int((bounds[k % wp.static(word_count)] >> shift) & wp.uint32(wp.static(highest_level)))
-
-    @wp.func
-    def add_level(bounds: Quantized, k: int, level: int) -> Quantized:
-        """Write the level of plane ``k`` where there was none."""
-        word = k % wp.static(word_count)
-        bounds[word] = bounds[word] | (wp.uint32(level) << wp.uint32(wp.static(bits) * (k // wp.static(word_count))))
-        return bounds
 
     @wp.func
     def empty() -> Extents:
@@ -103,7 +68,7 @@ def make_dop(*, dimension: int, bits: int, side: float = 1.0, diagonals: bool, c
     @wp.func
     def extend(extents: Extents, x: wp.vec3, sphere_radius: float) -> Extents:
         """Grow by a sphere."""
-        values = along_axes(x)
+        values = wp.static(axis_matrix) * x
         radii = (sphere_radius + ROUNDING) * wp.static(axis_lengths)
         for k in range(wp.static(axis_count)):
             extents[k] = wp.min(extents[k], values[k] - radii[k])
@@ -120,16 +85,15 @@ def make_dop(*, dimension: int, bits: int, side: float = 1.0, diagonals: bool, c
     def quantize(extents: Extents) -> Quantized:
         """Round every plane outward."""
         result = Quantized()
-        for k in range(wp.static(axis_count)):
+        for k in range(wp.static(axis_count)):  # few enough to be unrolled
             result = add_level(result, k, level_below(extents[k]))
             high = k + wp.static(axis_count)
             result = add_level(result, high, level_below(extents[high]))
         return result
 
     @wp.func
-    def plane_of(bounds: Quantized, k: int) -> float:
-        """Plane ``k`` that is stored."""
-        level = level_of(bounds, k)
+    def plane_of(level: int) -> float:
+        """The plane that a level stands for."""
         if level == 0:
             return -UNBOUNDED
         return float(level) * wp.static(quantum) - wp.static(RANGE)
@@ -139,7 +103,7 @@ def make_dop(*, dimension: int, bits: int, side: float = 1.0, diagonals: bool, c
         """The planes that are stored."""
         extents = Extents()
         for k in range(wp.static(plane_count)):
-            extents[k] = plane_of(bounds, k)
+            extents[k] = plane_of(level_of(bounds, k))
         return extents
 
     @wp.func
@@ -151,80 +115,71 @@ def make_dop(*, dimension: int, bits: int, side: float = 1.0, diagonals: bool, c
         return result
 
     @wp.func
-    def overlaps_piece(bounds: Quantized, pieces: PieceSlabs, i: int) -> bool:
+    def overlaps_piece(words: wp.array2d[word_type], walk: int, pieces: PieceSlabs, i: int) -> bool:
         """Whether a walk may meet piece ``i``."""
-        first = i * wp.static(plane_count)
-        for k in range(wp.static(axis_count)):
-            if level_of(bounds, k) > pieces.level[first + k]:
-                return False
-            high = k + wp.static(axis_count)
-            if level_of(bounds, high) > pieces.level[first + high]:
+        for r in range(wp.static(plane_count)):
+            k = pieces.order[i, r]
+            if level_at(words, walk, k) > pieces.limit[i, k]:
                 return False
         for m in range(pieces.low.shape[1]):
             highest = float(0.0)
             for a in range(wp.static(dimension)):
-                column = wp.static(dimension) * m + a
-                highest -= pieces.weight[i, column] * plane_of(bounds, pieces.half_space[i, column])
+                k = pieces.half_space[i, wp.static(dimension) * m + a]
+                highest -= pieces.weight[i, wp.static(dimension) * m + a] * plane_of(level_at(words, walk, k))
             if highest < pieces.low[i, m]:
                 return False
         return True
 
     @wp.func
-    def overlaps_any(bounds: Quantized, pieces: PieceSlabs) -> bool:
+    def overlaps_any(words: wp.array2d[word_type], walk: int, pieces: PieceSlabs) -> bool:
         """Whether a walk may meet any piece."""
         result = bool(False)
         for i in range(pieces.count):
             if not result:
-                result = overlaps_piece(bounds, pieces, i)
+                result = overlaps_piece(words, walk, pieces, i)
         return result
-
-    def unpack(rows: np.ndarray) -> np.ndarray:
-        """Levels of walks, shape (walk_count, plane_count)."""
-        planes = np.arange(plane_count)
-        shift = (bits * (planes // word_count)).astype(np.uint32)
-        return ((rows[:, planes % word_count] >> shift) & np.uint32(highest_level)).astype(np.uint16)
 
     decompose = _Decomposition(axes, dimension)
 
     def bound_pieces(polygons: list[np.ndarray], directions: list[np.ndarray], device: wp.Device) -> PieceSlabs:
         """Bound planar pieces; see ``BoundsKind``."""
-        levels, half_spaces, weights, lows = [], [], [], []
+        limits, orders, half_spaces, weights, lows = [], [], [], [], []
         for polygon, along in zip(polygons, directions, strict=True):
             values = polygon @ axes.T
-            # A walk's low must not exceed the piece's high, nor its negated high the negated low.
-            planes = np.concatenate([values.max(axis=0), -values.min(axis=0)]) + _MARGIN
-            levels.append(np.clip(np.floor((planes + RANGE) / quantum), 0, highest_level))
+            # Half-space k of a walk begins at its plane p; the piece ends at r: they are apart where p > r.
+            reach = np.concatenate([values.max(axis=0), -values.min(axis=0)]) + 1.0e-5
+            limits.append(np.clip(np.floor((reach + RANGE) / quantum) + 1.0, 0.0, highest_level))
+            # Most walks stay around the middle: the half-spaces that the piece is farthest out of decide first.
+            orders.append(np.argsort(reach / np.tile(np.linalg.norm(axes, axis=1), 2), kind="stable"))
             both_ways = np.concatenate([along, -along])
             chosen = [decompose(direction) for direction in both_ways]
             half_spaces.append(np.concatenate([c[0] for c in chosen]))
             weights.append(np.concatenate([c[1] for c in chosen]))
-            lows.append((polygon @ both_ways.T).min(axis=0) - _MARGIN)
+            lows.append((polygon @ both_ways.T).min(axis=0) - 1.0e-5)
         pieces = PieceSlabs()
         pieces.count = len(polygons)
         if polygons:
-            for name, rows, dtype in (
-                ("level", np.concatenate(levels), wp.int32),
-                ("half_space", half_spaces, wp.int32),
-                ("weight", weights, float),
-                ("low", lows, float),
-            ):
-                setattr(pieces, name, wp.array(np.array(rows), dtype=dtype, device=device))
+            for name, rows in (("limit", limits), ("order", orders), ("half_space", half_spaces)):
+                setattr(pieces, name, wp.array(np.array(rows, dtype=np.int32), dtype=wp.int32, device=device))
+            together = np.max(limits, axis=0)
+            pieces.first_component = int(np.argmin(together))
+            pieces.first_limit = int(together[pieces.first_component])
+            for name, rows in (("weight", weights), ("low", lows)):
+                setattr(pieces, name, wp.array(np.array(rows, dtype=np.float32), dtype=float, device=device))
         return pieces
 
     return BoundsKind(
-        Quantized, Extents, PieceSlabs, empty, extend, quantize, dequantize, merge, overlaps_any, bound_pieces, unpack
+        layout,
+        Extents,
+        PieceSlabs,
+        empty,
+        extend,
+        quantize,
+        dequantize,
+        merge,
+        overlaps_any,
+        bound_pieces,
     )
-
-
-def _axes(dimension: int, side: float, diagonals: bool, corner: float) -> np.ndarray:
-    """A DOP's axes, shape (axis_count, 3); see ``make_dop``."""
-    families = [side * np.eye(3)[:dimension]]
-    if diagonals:
-        pairs = [[1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]]
-        families.append(np.array(pairs[: 2 if dimension == 2 else 6], dtype=np.float64))
-    if corner > 0.0:
-        families.append(corner * np.array([[1, 1, 1], [1, 1, -1], [1, -1, 1], [1, -1, -1]]))
-    return np.concatenate(families)
 
 
 class _Decomposition:

@@ -3,13 +3,13 @@
 
 """What every kind of walk bounds offers, and the range in which all of them are quantised."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import warp as wp
+
+from .bounds_levels import LevelLayout
 
 RANGE = 2.25
 """Coordinates are quantised in [-RANGE, RANGE]: the unit frame's box, its diagonals x + y, and room around them."""
@@ -26,22 +26,22 @@ class BoundsKind:
     """One kind of bounding volume of a walk, in one dimension: types, Warp functions and one host function.
 
     Args:
-        Quantized: Warp vector that is stored for a walk.
+        layout: How the levels of a walk are stored.
         Extents: Warp vector that a walk keeps in registers.
-        PieceBounds: Warp struct with the bounds of new pieces of wall.
+        PieceBounds: Warp struct with the bounds of new pieces of wall. A walk whose level ``first_component`` exceeds
+            its ``first_limit`` meets none of them, which settles most walks with one comparison.
         empty: ``() -> Extents``, the volume of nothing.
         extend: ``(Extents, wp.vec3, float) -> Extents``, grow by a sphere and a rounding margin.
         quantize: ``(Extents) -> Quantized``, round outward.
         dequantize: ``(Quantized) -> Extents``, the volume that is stored.
         merge: ``(Quantized, Quantized) -> Quantized``, a volume that holds both.
-        overlaps_any: ``(Quantized, PieceBounds) -> bool``, whether the volume may meet any piece.
+        overlaps_any: ``(words, walk, PieceBounds) -> bool``, whether a walk's volume may meet any piece.
         bound_pieces: ``(polygons, directions, device) -> PieceBounds``: corners of each planar piece in the unit frame,
             shape (k, 3) each, and further directions to bound each along, both ways, shape (m, 3) each. In the plane
             pieces are segments, of two corners with z = 0.
-        unpack: Levels, a row a walk, from an array of ``Quantized`` on the host.
     """
 
-    Quantized: type
+    layout: LevelLayout
     Extents: type
     PieceBounds: object
     empty: wp.Function
@@ -51,9 +51,18 @@ class BoundsKind:
     merge: wp.Function
     overlaps_any: wp.Function
     bound_pieces: Callable[[list[np.ndarray], list[np.ndarray], wp.Device], object]
-    unpack: Callable[[np.ndarray], np.ndarray]
+
+    @property
+    def Quantized(self) -> type:
+        """Warp vector that is stored for a walk."""
+        return self.layout.Quantized
 
     @property
     def byte_count(self) -> int:
         """Bytes a walk."""
-        return wp.types.type_size_in_bytes(self.Quantized)
+        return wp.types.type_size_in_bytes(self.layout.Quantized)
+
+    def empty_words(self, walk_count: int, device: wp.Device) -> wp.array:
+        """Reserve the walks' words, shape (word_count, walk_count)."""
+        words = self.layout.Quantized._length_
+        return wp.empty((words, walk_count), dtype=self.layout.word_type, device=device)

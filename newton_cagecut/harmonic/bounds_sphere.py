@@ -10,6 +10,7 @@ import numpy as np
 import warp as wp
 
 from .bounds_kind import RANGE, ROUNDING, UNBOUNDED, BoundsKind
+from .bounds_levels import make_layout
 
 wp.set_module_options({"enable_backward": False})
 
@@ -27,6 +28,8 @@ class PieceBoxes:
     axis: wp.array2d[wp.vec3]
     low: wp.array2d[float]
     high: wp.array2d[float]
+    first_component: int
+    first_limit: int
     count: int
 
 
@@ -64,7 +67,8 @@ def make_sphere(dimension: int) -> BoundsKind:
     Args:
         dimension: 2 or 3.
     """
-    Quantized = wp.types.vector(length=dimension + 1, dtype=wp.uint16)
+    layout = make_layout(dimension + 1, 16)
+    Quantized, load = layout.Quantized, layout.load
 
     @wp.func
     def quantize(extents: wp.vec4) -> Quantized:
@@ -106,9 +110,9 @@ def make_sphere(dimension: int) -> BoundsKind:
         return quantize(enclose(dequantize(a), wp.vec3(other[0], other[1], other[2]), other[3]))
 
     @wp.func
-    def overlaps_any(bounds: Quantized, pieces: PieceBoxes) -> bool:
+    def overlaps_any(words: wp.array2d[wp.uint16], walk: int, pieces: PieceBoxes) -> bool:
         """Whether a walk may meet any piece."""
-        sphere = dequantize(bounds)
+        sphere = dequantize(load(words, walk))
         center = wp.vec3(sphere[0], sphere[1], sphere[2])
         reach = sphere[3] * (1.0 + _SHARE)
         result = bool(False)
@@ -123,7 +127,16 @@ def make_sphere(dimension: int) -> BoundsKind:
         return result
 
     return BoundsKind(
-        Quantized, wp.vec4, PieceBoxes, empty, extend, quantize, dequantize, merge, overlaps_any, _bound_pieces, np.copy
+        layout,
+        wp.vec4,
+        PieceBoxes,
+        empty,
+        extend,
+        quantize,
+        dequantize,
+        merge,
+        overlaps_any,
+        _bound_pieces,
     )
 
 
@@ -131,6 +144,7 @@ def _bound_pieces(polygons: list[np.ndarray], directions: list[np.ndarray], devi
     """Bound planar pieces; see ``BoundsKind``."""
     pieces = PieceBoxes()
     pieces.count = len(polygons)
+    pieces.first_limit = int(_LEVELS)  # no component of a sphere decides alone
     if polygons:
         axes = [np.linalg.qr(along.T, mode="complete")[0].T for along in directions]
         values = [polygon @ axis.T for polygon, axis in zip(polygons, axes, strict=True)]
