@@ -69,7 +69,7 @@ class Opening:
         return values
 
     def created_positions(self) -> np.ndarray:
-        """Positions of the created vertices, shape (created_count, 3) [m]."""
+        """Positions of the created vertices, shape (created_count, dimension) [m]."""
         tips = self.region.position[self.section.node_count + self.tip_chords]
         return self.created_values(self.section.node_position, tips)
 
