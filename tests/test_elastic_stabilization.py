@@ -7,8 +7,10 @@ import pytest
 import warp as wp
 
 from elastic_bodies import THICKNESS, Body, as_array, as_vectors, both_dimensions
+from newton_cagecut.cage import Blade, Cut
 from newton_cagecut.elastic import Material, ReducedSystem
 from newton_cagecut.elastic.stabilization import stabilize
+from plane_shapes import square
 
 
 def tip_over_a_side(dimension):
@@ -54,6 +56,19 @@ def test_ties_reach_past_neighbors_on_a_line(dimension):
     stiffness, mass = stabilize(flat, edges, *sampled(len(flat), dimension, [tip]))
     assert not stiffness.any()
     assert not mass.any()
+
+
+def test_fresh_tip_of_a_plane_cut_is_tied():
+    """The tip of a cut that has just entered a straight side is held, though all near it lies on that side."""
+    cut = Cut(square(), Blade((0.5, -0.5), (0.0, 1.0)))
+    edit = cut.advance(to=0.1)
+    cage = edit.cage
+    stiffness, _ = stabilize(
+        cage.vertices, cage.mesh.edges, *sampled(cage.vertex_count, cage.dimension, edit.created.tolist())
+    )
+    tip = int(np.argmin(np.linalg.norm(cage.vertices - [0.5, 0.1], axis=1)))
+    assert stiffness[tip, tip] > 0.0
+    np.testing.assert_allclose(stiffness @ cage.vertices, 0.0, atol=1e-12)
 
 
 @both_dimensions
