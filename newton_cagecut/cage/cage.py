@@ -13,8 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
-from . import intersection, segment_checks, validation
+from . import extension, intersection, segment_checks, validation
+from .edit import CageEdit
 from .face_triangles import triangulate_faces
+from .obstacle import insert_obstacle
 from .pieces import component_piece
 from .polygon_mesh import PolygonMesh
 from .wall import Wall, face_walls
@@ -58,7 +60,7 @@ class Cage:
     def _assembled(
         cls, base: Cage, mesh: PolygonMesh, walls: tuple[Wall, ...], face_wall: np.ndarray, face_side: np.ndarray
     ) -> Cage:
-        """A cage that a cut made of ``base``, taken as it is."""
+        """A cage that an edit made of ``base``, taken as it is."""
         cage = cls.__new__(cls)
         cage.tolerance = base.tolerance
         cage.diameter = base.diameter
@@ -261,6 +263,53 @@ class Cage:
         number = self.winding_numbers(points)
         volume = np.where((number > 0.5) & (self.component_volumes > 0.0), self.component_volumes, np.inf)
         return np.where(number.sum(axis=1) > 0.5, self.component_piece[volume.argmin(axis=1)], -1)
+
+    def extrude(self, face: int, distance: float) -> CageEdit:
+        """Move a face outward along its normal and close the gap around it with new faces; the cage stays as it is.
+
+        Args:
+            face: A face that no cut has slit or split.
+            distance: How far it moves [m].
+
+        Returns:
+            The step to the extended cage.
+
+        Raises:
+            TypeError: If the face is not an integer or the distance not a number.
+            ValueError: If the face cannot be extruded or something is in its way; the text names the culprit.
+        """
+        return extension.extrude(self, face, distance)
+
+    def move_face(self, face: int, distance: float) -> CageEdit:
+        """Move a face outward along its normal, its neighbours growing with it; the cage stays as it is.
+
+        Args:
+            face: A face that no cut has slit or split, at right angles to all its neighbours.
+            distance: How far it moves [m].
+
+        Returns:
+            The step to the extended cage.
+
+        Raises:
+            TypeError: If the face is not an integer or the distance not a number.
+            ValueError: If a neighbour would not stay planar, or something is in its way; the text names the culprit.
+        """
+        return extension.move_face(self, face, distance)
+
+    def insert(self, obstacle: Cage) -> CageEdit:
+        """Take the room of an obstacle from the body; the cage stays as it is.
+
+        Args:
+            obstacle: A cage without cuts, strictly inside the body.
+
+        Returns:
+            The step to the cage with a cavity.
+
+        Raises:
+            TypeError: If the obstacle is not a cage.
+            ValueError: If the obstacle is not strictly inside the body; the text names the culprit.
+        """
+        return insert_obstacle(self, obstacle)
 
     def _check_topology(self) -> None:
         if self.dimension == 2:

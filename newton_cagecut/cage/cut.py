@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .arguments import as_number
 from .blade import Blade, BladePlane, clear_plane, clear_turn
 from .cage import Cage
 from .edit import CageEdit
@@ -130,7 +131,7 @@ class Cut:
             TypeError: If the depth is not a number.
             ValueError: If the depth is not a number's value, or less than the depth now.
         """
-        depth = _as_depth(to)
+        depth = as_number(to, "the depth of a cut")
         if depth < self.depth:
             raise ValueError(f"a cut never goes back: it has reached depth {self.depth:g}, asked for {depth:g}")
         self._state, edit = self._strip.advance(self._state, depth - self._strips[-1][1], depth)
@@ -228,7 +229,7 @@ class Cut:
                 raise ValueError("the snapshot is of another cut; rewind that one, or take a snapshot of this one")
             self._strips, self.depth, self._state = to.strips, to.depth, to.state
             return self.cage
-        depth = _as_depth(to)
+        depth = as_number(to, "the depth of a cut")
         if not 0.0 <= depth <= self.depth:
             raise ValueError(f"a cut is rewound to a depth between 0 and {self.depth:g}, where it is, not to {depth:g}")
         kept = [item for item in self._strips if item[1] <= depth]
@@ -253,13 +254,3 @@ def _find_hinge(cage: Cage, wall: int | None, plane: BladePlane) -> Hinge:
         used[mesh.face_vertex[key == 2 * wall + side]] = True
         on_front &= used
     return Hinge.of(mesh, cage.face_key, wall, on_front)
-
-
-def _as_depth(to: float) -> float:
-    try:
-        depth = float(to)
-    except (TypeError, ValueError):
-        raise TypeError(f"the depth of a cut must be a number, got {to!r}") from None
-    if np.isnan(depth):
-        raise ValueError("the depth of a cut must be a number, got nan")
-    return depth

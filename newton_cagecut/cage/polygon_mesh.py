@@ -33,6 +33,20 @@ class PolygonMesh:
         self.face_start = face_start
         self.face_vertex = face_vertex
 
+    def extended(self, vertices: np.ndarray, face_size: np.ndarray, face_vertex: np.ndarray) -> PolygonMesh:
+        """The mesh with further vertices and faces behind its own.
+
+        Args:
+            vertices: Positions of the further vertices, shape (count, dimension) [m].
+            face_size: Number of corners of each further face, shape (face_count,).
+            face_vertex: Vertex at which each of their half-edges starts, in the new numbering, shape (corner_count,).
+        """
+        return PolygonMesh(
+            np.concatenate([self.vertices, vertices]),
+            np.concatenate([self.face_start, self.face_start[-1] + np.cumsum(face_size)]),
+            np.concatenate([self.face_vertex, face_vertex]),
+        )
+
     @property
     def dimension(self) -> int:
         """Dimension of the space; in 2D the faces are segments."""
