@@ -20,7 +20,16 @@ class Body:
     """A rectangle or a box cut into cells, its system and its state on the CPU; the last axis points up."""
 
     def __init__(
-        self, dimension=3, cells=(1, 1, 1), points=5, spare=2, fix_top=False, rotation=None, offset=0.0, **options
+        self,
+        dimension=3,
+        cells=(1, 1, 1),
+        points=5,
+        spare=2,
+        fix_top=False,
+        rotation=None,
+        offset=0.0,
+        thickness=THICKNESS,
+        **options,
     ):
         material = Material(**{k: options.pop(k) for k in tuple(options) if k in Material.__dataclass_fields__})
         self.dimension, self.material = dimension, material
@@ -33,7 +42,7 @@ class Body:
         self.weights = outer_products([values for values, _ in hats])
         gradients = [outer_products([hats[d][int(d == k)] for d in range(dimension)]) for k in range(dimension)]
         self.gradients = as_vectors(np.stack(gradients, axis=-1))
-        self.thickness = THICKNESS if dimension == 2 else None
+        self.thickness = thickness if dimension == 2 else None
         self.volume = size.prod() * (self.thickness or 1.0)
         self.volumes = np.full(len(self.points), self.volume / len(self.points))
         self.fixed = (self.vertices[:, -1] > size[-1] - 1e-6) & fix_top
@@ -117,6 +126,45 @@ class Body:
     def energy(self):
         """Elastic and kinetic energy together."""
         return sum(self.system.energy(self.x, self.v))
+
+
+@wp.kernel(enable_backward=False)
+def pull_residual(
+    dt: float,
+    stiffness: float,
+    target: wp.vec3,
+    positions: wp.array[wp.vec3],
+    predicted: wp.array[wp.vec3],
+    residual: wp.array[wp.vec3],
+    blocks: wp.array[wp.mat33],
+):
+    """A spring on vertex 0."""
+    residual[0] += dt * stiffness * (target - positions[0]) - dt * dt * stiffness * predicted[0]
+    blocks[0] += dt * dt * stiffness * wp.identity(3, dtype=float)
+
+
+@wp.kernel(enable_backward=False)
+def pull_product(scale: float, direction: wp.array[wp.vec3], product: wp.array[wp.vec3]):
+    """The spring's stiffness times a direction."""
+    product[0] += scale * direction[0]
+
+
+class Spring:
+    """A linear term: an implicit spring that pulls vertex 0 to a target."""
+
+    def __init__(self, body, stiffness, target):
+        self.body, self.stiffness, self.target = body, stiffness, wp.vec3(*target)
+
+    def add_residual(self, dt, predicted, residual, blocks):
+        """Add the spring's force."""
+        self.dt = dt
+        inputs = [dt, self.stiffness, self.target, self.body.x, predicted, residual, blocks]
+        wp.launch(pull_residual, dim=1, inputs=inputs, device="cpu")
+
+    def add_product(self, direction, product):
+        """Add the spring's stiffness."""
+        inputs = [self.stiffness * self.dt * self.dt, direction, product]
+        wp.launch(pull_product, dim=1, inputs=inputs, device="cpu")
 
 
 def grid(axes):

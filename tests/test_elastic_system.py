@@ -8,7 +8,7 @@ import warp as wp
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
-from elastic_bodies import DT, STILL, THICKNESS, Body, as_array, both_dimensions
+from elastic_bodies import DT, STILL, THICKNESS, Body, Spring, as_array, both_dimensions
 from newton_cagecut.elastic import Material, ReducedSystem
 
 
@@ -198,43 +198,6 @@ def test_external_forces_accelerate_the_body(dimension):
     acceleration = body.to_world([2.0, 0.0, -1.0][-dimension:])
     body.run(30, forces=as_array(mass * acceleration, wp.vec3))
     np.testing.assert_allclose(body.velocities, np.tile(0.5 * acceleration, (body.count, 1)), atol=1e-4)
-
-
-@wp.kernel(enable_backward=False)
-def pull_residual(
-    dt: float,
-    stiffness: float,
-    target: wp.vec3,
-    positions: wp.array[wp.vec3],
-    predicted: wp.array[wp.vec3],
-    residual: wp.array[wp.vec3],
-    blocks: wp.array[wp.mat33],
-):
-    """A spring on vertex 0."""
-    residual[0] += dt * stiffness * (target - positions[0]) - dt * dt * stiffness * predicted[0]
-    blocks[0] += dt * dt * stiffness * wp.identity(3, dtype=float)
-
-
-@wp.kernel(enable_backward=False)
-def pull_product(scale: float, direction: wp.array[wp.vec3], product: wp.array[wp.vec3]):
-    """The spring's stiffness times a direction."""
-    product[0] += scale * direction[0]
-
-
-class Spring:
-    """A linear term: an implicit spring that pulls vertex 0 to a target."""
-
-    def __init__(self, body, stiffness, target):
-        self.body, self.stiffness, self.target = body, stiffness, wp.vec3(*target)
-
-    def add_residual(self, dt, predicted, residual, blocks):
-        """Add the spring's force."""
-        inputs = [dt, self.stiffness, self.target, self.body.x, predicted, residual, blocks]
-        wp.launch(pull_residual, dim=1, inputs=inputs, device="cpu")
-
-    def add_product(self, direction, product):
-        """Add the spring's stiffness."""
-        wp.launch(pull_product, dim=1, inputs=[self.stiffness * DT * DT, direction, product], device="cpu")
 
 
 @both_dimensions

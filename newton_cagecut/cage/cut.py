@@ -159,15 +159,16 @@ class Cut:
         self._go_on(self.cage, turned)
 
     def resume(self, cage: Cage) -> None:
-        """Go on in a cage that other cuts have changed since the last step.
+        """Go on in a cage that other cuts, extensions or obstacles have changed since the last step.
 
         Further steps open a further wall, in the same plane as far as the tolerance allows.
 
         Args:
-            cage: The cage as it is now, made by other cuts from this cut's.
+            cage: The cage as it is now, made by other edits from this cut's.
 
         Raises:
-            ValueError: If the cage is not one that came of this cut's. Nothing has changed then.
+            ValueError: If the cage is not one that came of this cut's, or it has grown across the cut's front line,
+                beside where the cut has come. Nothing has changed then.
         """
         if cage.walls[: len(self.cage.walls)] != self.cage.walls:
             raise ValueError("the cage did not come of this cut's: it lacks some of its walls; begin a new cut")

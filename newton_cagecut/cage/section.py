@@ -119,7 +119,8 @@ class Section:
         if len(corner) != np.abs(balance).sum():
             raise ValueError(
                 "the section does not close at the front of the cut before it: faces "
-                f"{np.flatnonzero(balance).tolist()[:4]} have no corner of their own there; move the blade a little"
+                f"{np.flatnonzero(balance).tolist()[:4]} have no corner of their own there; move the blade a "
+                "little, or begin a new cut where the cage has grown across the front"
             )
         vertex = mesh.face_vertex[corner]
         edges = np.concatenate([hinge.edges, mesh.twin[hinge.edges]])

@@ -86,7 +86,7 @@ class ReducedSystem:
         rotation: wp.array | None = None,
         thickness: float | None = None,
         maximum_iterations: int = 150,
-        tolerance: float = 1.0e-4,
+        tolerance: float = 1.0e-5,
     ):
         self.device, self.vertex_capacity, self.point_count = rest.device, rest.shape[0], weights.shape[0]
         capacity, points = self.vertex_capacity, self.point_count

@@ -12,7 +12,7 @@ import itertools
 import numpy as np
 import warp as wp
 
-from .bounds_kind import RANGE, ROUNDING, UNBOUNDED, BoundsKind
+from .bounds_kind import RANGE, ROUNDING, UNBOUNDED, BoundsKind, make_access
 
 wp.set_module_options({"enable_backward": False})
 
@@ -21,15 +21,20 @@ wp.set_module_options({"enable_backward": False})
 class PieceSlabs:
     """Bounds of new pieces of wall, a row each: the DOP's planes, and extents along further directions.
 
-    ``plane`` has the lows along the axes, then the negated highs. Direction m of piece i is the sum over a of
+    ``limit`` has the last level of each of the DOP's half-spaces that meets the piece, the lows along the axes, then
+    the highs; ``order`` lists them, those that most walks fail first. ``first_component`` and ``first_limit`` are a
+    half-space for all pieces together. Direction m of piece i is the sum over a of
     weight[i, d m + a] times the normal of half-space[i, d m + a], with the dimension d; ``low[i, m]`` is the piece's
     least coordinate along it.
     """
 
-    plane: wp.array2d[float]
+    limit: wp.array2d[wp.int32]
+    order: wp.array2d[wp.int32]
     half_space: wp.array2d[wp.int32]
     weight: wp.array2d[float]
     low: wp.array2d[float]
+    first_component: int
+    first_limit: int
     count: int
 
 
@@ -97,41 +102,45 @@ def make_dop(axes: np.ndarray, dimension: int, level_type: type) -> BoundsKind:
         """Bounds of everything that two bounds hold: those of the union, to the bit."""
         return wp.min(a, b)
 
+    load, store = make_access(Quantized, level_type)
+
     @wp.func
-    def overlaps_piece(bounds: Quantized, pieces: PieceSlabs, i: int) -> bool:
+    def overlaps_piece(levels: wp.array2d[level_type], walk: int, pieces: PieceSlabs, i: int) -> bool:
         """Whether a walk may meet piece ``i``."""
-        for k in range(wp.static(axis_count)):
-            # low_walk <= high_piece and low_piece <= high_walk, with negated highs: low + (-high) <= 0
-            if plane_of(bounds[k]) + pieces.plane[i, k + wp.static(axis_count)] > 0.0:
-                return False
-            if pieces.plane[i, k] + plane_of(bounds[k + wp.static(axis_count)]) > 0.0:
+        for r in range(wp.static(plane_count)):
+            k = pieces.order[i, r]
+            if int(levels[k, walk]) > pieces.limit[i, k]:
                 return False
         for m in range(pieces.low.shape[1]):
             highest = float(0.0)
             for a in range(wp.static(dimension)):
                 k = pieces.half_space[i, wp.static(dimension) * m + a]
-                highest -= pieces.weight[i, wp.static(dimension) * m + a] * plane_of(bounds[k])
+                highest -= pieces.weight[i, wp.static(dimension) * m + a] * plane_of(levels[k, walk])
             if highest < pieces.low[i, m]:
                 return False
         return True
 
     @wp.func
-    def overlaps_any(bounds: Quantized, pieces: PieceSlabs) -> bool:
+    def overlaps_any(levels: wp.array2d[level_type], walk: int, pieces: PieceSlabs) -> bool:
         """Whether a walk may meet any piece."""
         result = bool(False)
         for i in range(pieces.count):
             if not result:
-                result = overlaps_piece(bounds, pieces, i)
+                result = overlaps_piece(levels, walk, pieces, i)
         return result
 
     decompose = _Decomposition(axes, dimension)
 
     def bound_pieces(polygons: list[np.ndarray], directions: list[np.ndarray], device: wp.Device) -> PieceSlabs:
         """Bound planar pieces; see ``BoundsKind``."""
-        planes, half_spaces, weights, lows = [], [], [], []
+        limits, orders, half_spaces, weights, lows = [], [], [], [], []
         for polygon, along in zip(polygons, directions, strict=True):
             values = polygon @ axes.T
-            planes.append(np.concatenate([values.min(axis=0), -values.max(axis=0)]) - 1.0e-5)
+            # Half-space k of a walk begins at its plane p; the piece ends at r: they are apart where p > r.
+            reach = np.concatenate([values.max(axis=0), -values.min(axis=0)]) + 1.0e-5
+            limits.append(np.clip(np.floor((reach + RANGE) / quantum) + 1.0, 0.0, highest_level))
+            # Most walks stay around the middle: the half-spaces that the piece is farthest out of decide first.
+            orders.append(np.argsort(reach / np.tile(np.linalg.norm(axes, axis=1), 2), kind="stable"))
             both_ways = np.concatenate([along, -along])
             chosen = [decompose(direction) for direction in both_ways]
             half_spaces.append(np.concatenate([c[0] for c in chosen]))
@@ -140,13 +149,28 @@ def make_dop(axes: np.ndarray, dimension: int, level_type: type) -> BoundsKind:
         pieces = PieceSlabs()
         pieces.count = len(polygons)
         if polygons:
-            pieces.half_space = wp.array(np.array(half_spaces, dtype=np.int32), dtype=wp.int32, device=device)
-            for name, rows in (("plane", planes), ("weight", weights), ("low", lows)):
+            for name, rows in (("limit", limits), ("order", orders), ("half_space", half_spaces)):
+                setattr(pieces, name, wp.array(np.array(rows, dtype=np.int32), dtype=wp.int32, device=device))
+            together = np.max(limits, axis=0)
+            pieces.first_component = int(np.argmin(together))
+            pieces.first_limit = int(together[pieces.first_component])
+            for name, rows in (("weight", weights), ("low", lows)):
                 setattr(pieces, name, wp.array(np.array(rows, dtype=np.float32), dtype=float, device=device))
         return pieces
 
     return BoundsKind(
-        Quantized, Extents, PieceSlabs, empty, extend, quantize, dequantize, merge, overlaps_any, bound_pieces
+        Quantized,
+        Extents,
+        PieceSlabs,
+        empty,
+        extend,
+        quantize,
+        dequantize,
+        merge,
+        load,
+        store,
+        overlaps_any,
+        bound_pieces,
     )
 
 

@@ -9,7 +9,7 @@ A sphere bound has no axes, so pieces of wall are bounded by boxes along directi
 import numpy as np
 import warp as wp
 
-from .bounds_kind import RANGE, ROUNDING, UNBOUNDED, BoundsKind
+from .bounds_kind import RANGE, ROUNDING, UNBOUNDED, BoundsKind, make_access
 
 wp.set_module_options({"enable_backward": False})
 
@@ -27,6 +27,8 @@ class PieceBoxes:
     axis: wp.array2d[wp.vec3]
     low: wp.array2d[float]
     high: wp.array2d[float]
+    first_component: int
+    first_limit: int
     count: int
 
 
@@ -105,10 +107,12 @@ def make_sphere(dimension: int) -> BoundsKind:
         other = dequantize(b)
         return quantize(enclose(dequantize(a), wp.vec3(other[0], other[1], other[2]), other[3]))
 
+    load, store = make_access(Quantized, wp.uint16)
+
     @wp.func
-    def overlaps_any(bounds: Quantized, pieces: PieceBoxes) -> bool:
+    def overlaps_any(levels: wp.array2d[wp.uint16], walk: int, pieces: PieceBoxes) -> bool:
         """Whether a walk may meet any piece."""
-        sphere = dequantize(bounds)
+        sphere = dequantize(load(levels, walk))
         center = wp.vec3(sphere[0], sphere[1], sphere[2])
         reach = sphere[3] * (1.0 + _SHARE)
         result = bool(False)
@@ -123,7 +127,18 @@ def make_sphere(dimension: int) -> BoundsKind:
         return result
 
     return BoundsKind(
-        Quantized, wp.vec4, PieceBoxes, empty, extend, quantize, dequantize, merge, overlaps_any, _bound_pieces
+        Quantized,
+        wp.vec4,
+        PieceBoxes,
+        empty,
+        extend,
+        quantize,
+        dequantize,
+        merge,
+        load,
+        store,
+        overlaps_any,
+        _bound_pieces,
     )
 
 
@@ -131,6 +146,7 @@ def _bound_pieces(polygons: list[np.ndarray], directions: list[np.ndarray], devi
     """Bound planar pieces; see ``BoundsKind``."""
     pieces = PieceBoxes()
     pieces.count = len(polygons)
+    pieces.first_limit = int(_LEVELS)  # no component of a sphere decides alone
     if polygons:
         axes = [np.linalg.qr(along.T, mode="complete")[0].T for along in directions]
         values = [polygon @ axis.T for polygon, axis in zip(polygons, axes, strict=True)]

@@ -15,6 +15,9 @@ from .walk import ON_WALL
 
 wp.set_module_options({"enable_backward": False})
 
+CPU_BLOCK = 4096
+"""Walks that one thread marks on a CPU, where a thread costs more than a walk; on CUDA it is one."""
+
 KEPT = wp.constant(wp.uint8(0))
 REWALK = wp.constant(wp.uint8(1))
 ON_FACE = wp.constant(wp.uint8(2))
@@ -38,8 +41,10 @@ def make_mark_kernel(bounds_kind: BoundsKind) -> wp.Kernel:
     @wp.kernel(enable_backward=False, module="unique")
     def mark_walks(
         offset: int,
+        block: int,
+        walk_count: int,
         walks: int,
-        bounds: wp.array[bounds_kind.Quantized],
+        bounds: wp.array2d[bounds_kind.level_type],
         pieces: bounds_kind.PieceBounds,
         points: QueryPoints,
         keys: wp.array[wp.int32],
@@ -47,28 +52,30 @@ def make_mark_kernel(bounds_kind: BoundsKind) -> wp.Kernel:
         marks: wp.array[wp.uint8],
         touched: wp.array[wp.uint8],
     ):
-        """Sort a walk into the paper's three classes (section 5.2): walk again, evaluate again on its face, reuse.
+        """Sort walks into the paper's three classes (section 5.2): walk again, evaluate again on its face, reuse.
 
         A fourth one are walks that go on from their landings, since the wall there has retired (section 8). That needs
         a walk that has come through no gate before, and that no cap has stopped on its way to the wall.
         """
-        walk = offset + wp.tid()
-        point = walk // walks
-        key = keys[walk]
-        change = key_changes[key & KEY_MASK]
-        mark = KEPT
-        if bounds_kind.overlaps_any(bounds[walk], pieces):
-            mark = REWALK
-            # Else it touches its point only if it then ends elsewhere, which the walk itself finds out.
+        first = (offset + wp.tid()) * block
+        for walk in range(first, wp.min(first + block, walk_count)):
+            mark = KEPT
+            key = keys[walk]
+            change = key_changes[key & KEY_MASK]
+            # An evaluated landing touches its point if its boundary value changes, which landing finds out; a walk that
+            # is walked again, if it ends elsewhere, or on a changed face.
             if change == CHANGED_KEY:
-                touched[point] = wp.uint8(1)
-        elif change == CHANGED_KEY:
-            mark = ON_FACE  # touches its point if its boundary value changes, which landing finds out
-        elif change == RETIRED_KEY:
-            mark = REWALK
-            if (key & (PASSED | CAPPED)) == 0 and points.first_radius[point] >= ON_WALL:
-                mark = RESUME
-        marks[walk] = mark
+                mark = ON_FACE
+            elif change == RETIRED_KEY:
+                mark = REWALK
+                if (key & (PASSED | CAPPED)) == 0 and points.first_radius[walk // walks] >= ON_WALL:
+                    mark = RESUME
+            if int(bounds[pieces.first_component, walk]) <= pieces.first_limit:
+                if bounds_kind.overlaps_any(bounds, walk, pieces):
+                    mark = REWALK
+                    if change == CHANGED_KEY:
+                        touched[walk // walks] = wp.uint8(1)
+            marks[walk] = mark
 
     return mark_walks
 

@@ -11,7 +11,7 @@ import numpy as np
 import warp as wp
 
 from ..cage import Cage, CageEdit, check_inside
-from .compact import ON_FACE, RESUME, REWALK, gather, make_mark_kernel
+from .compact import CPU_BLOCK, ON_FACE, RESUME, REWALK, gather, make_mark_kernel
 from .domain import Domain, DomainChange
 from .landing import LANDING_DTYPES
 from .launch import launch
@@ -145,7 +145,7 @@ class HarmonicCoordinates:
     @property
     def bounds(self) -> np.ndarray:
         """The cached bounds of the walks, quantised, a row a walk; a copy."""
-        return self._cache_of("bounds").bounds.numpy()[: self.point_count * self.walks].copy()
+        return self._cache_of("bounds").bounds.numpy()[:, : self.point_count * self.walks].T.copy()
 
     def memory(self) -> dict[str, int]:
         """Bytes of each part on the device."""
@@ -283,12 +283,10 @@ class HarmonicCoordinates:
             marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
             touched = wp.zeros(self.point_count, dtype=wp.uint8, device=device)
             changes = wp.array(change.key_changes, dtype=wp.uint8, device=device)
-            launch(
-                make_mark_kernel(kind),
-                walk_count,
-                [self.walks, walker.bounds, pieces, walker.points, walker.landings.key, changes, marks, touched],
-                device=device,
-            )
+            block = 1 if device.is_cuda else CPU_BLOCK
+            inputs = [block, walk_count, self.walks, walker.bounds, pieces, walker.points, walker.landings.key]
+            inputs += [changes, marks, touched]
+            launch(make_mark_kernel(kind), -(-walk_count // block), inputs, device=device, smallest_chunk=8)
             rewalk, on_face, resume = (gather(marks, int(mark)) for mark in (REWALK, ON_FACE, RESUME))
         stats.checked = walk_count
         stats.rewalked, stats.on_face, stats.resumed = rewalk.size, on_face.size, resume.size
