@@ -6,7 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from newton_cagecut.cage import Cage
+from newton_cagecut.cage import Blade, Cage
+from plane_shapes import check_outline, ring
 
 
 def box(size=(1.0, 1.0, 1.0)) -> Cage:
@@ -26,14 +27,6 @@ def prism(polygon: np.ndarray, height: float = 1.0) -> Cage:
     vertices = np.concatenate([np.c_[polygon, np.zeros(n)], np.c_[polygon, np.full(n, height)]])
     sides = [(i, (i + 1) % n, n + (i + 1) % n, n + i) for i in range(n)]
     return Cage(vertices, [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides])
-
-
-def ring(count: int, radius: float = 1.0, inner: float | None = None) -> np.ndarray:
-    """A regular polygon, or a star with ``count`` spikes if an inner radius is given, shape (n, 2)."""
-    n = count if inner is None else 2 * count
-    angle = np.arange(n) * 2.0 * np.pi / n + 0.1
-    r = np.where(np.arange(n) % 2 == 0, radius, radius if inner is None else inner)
-    return np.c_[r * np.cos(angle), r * np.sin(angle)]
 
 
 def hexagonal_prism() -> Cage:
@@ -122,12 +115,21 @@ SHAPES = {
 CONVEX = ("tetrahedron", "box", "hexagonal_prism", "merged_cube")
 
 
+def random_blade(rng: np.random.Generator, cage: Cage, margin: float = 0.2) -> Blade:
+    """A blade in any direction through the middle of a cage of either dimension."""
+    low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
+    origin = low + (high - low) * rng.uniform(margin, 1.0 - margin, cage.dimension)
+    return Blade(origin, *rng.normal(size=(cage.dimension - 1, cage.dimension)))
+
+
 def opened_characteristic(base: Cage, cage: Cage, wall: int) -> int:
     """Euler characteristic that opening a wall of a cut must leave.
 
     Each opened sheet adds twice its own characteristic (one, less one for each hole) less one for each stretch of its
-    border along which its two sides stay together.
+    border along which its two sides stay together. In 2D every loop is closed and has none.
     """
+    if cage.dimension == 2:
+        return 0
     mesh = cage.mesh
     on_wall = cage.face_wall == wall
     side, face = cage.face_side[mesh.face], mesh.face
@@ -146,6 +148,9 @@ def check_manifold(cage: Cage, volume: float, rtol: float = 1e-9, *, hollow: boo
 
     Only where the cage may be hollow, components may be the boundaries of cavities.
     """
+    if cage.dimension == 2:
+        check_outline(cage, volume, rtol)
+        return
     cage.validate()
     faces = cage.faces
     edges: dict[tuple[int, int], int] = {}
