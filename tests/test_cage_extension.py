@@ -10,14 +10,15 @@ import numpy as np
 import pytest
 
 from cage_shapes import SHAPES, box, check_manifold, hexagonal_prism, prism, tetrahedron, u_shape, voxels
-from cut_sequences import crossings
+from cut_sequences import CAGES, crossings
 from extension_checks import check_edit
 from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
+from newton_cagecut.cage.intersection import edge_distances
 from plane_shapes import PLANES, outline, rectangle, ring, square
 
-EVERY = SHAPES | PLANES
+EVERY = SHAPES | PLANES | {"collinear_prism": CAGES["collinear_prism"]}
 MOVABLE = {"box": 6, "hexagonal_prism": 2, "star_prism": 2, "u_shape": 7, "square": 4, "l_shape": 4, "holed_square": 4}
-MOVABLE |= {"comb": 7, "island": 8}
+MOVABLE |= {"comb": 7, "island": 8, "collinear_prism": 2}
 """How many faces have only neighbours that are at right angles to them and go straight back."""
 
 
@@ -241,6 +242,50 @@ def _two_boxes(dimension: int) -> Cage:
     if dimension == 2:
         return outline(rectangle((0, 0), (1, 1)), rectangle((2, 0), (3, 1)))
     return voxels([(0, 0, 0), (2, 0, 0)], np.ones(3))
+
+
+def _points_in_prism(cage: Cage, face: int, distance: float, rng: np.random.Generator) -> np.ndarray:
+    """Random points of what a face sweeps."""
+    corners = cage.vertices[cage.simplices[cage.simplex_face == face]]
+    weights = rng.dirichlet(np.ones(cage.dimension), (100, len(corners)))
+    points = np.einsum("ntc,tcd->ntd", weights, corners).reshape(-1, cage.dimension)
+    return points + rng.uniform(0.01, 0.99, (len(points), 1)) * distance * cage.walls[face].normal
+
+
+@pytest.mark.parametrize("name", ["u_shape", "square_torus", "star_shaped", "comb", "island", "annulus"])
+def test_the_way_is_free_up_to_some_distance(name):
+    """What a face sweeps was outside and is inside; from the distance on at which it is refused, it always is."""
+    cage, rng = (CAGES | PLANES)[name](), np.random.default_rng(1)
+    any_refused = False
+    for face in rng.permutation(cage.face_count)[:12].tolist():
+        ended = False
+        for distance in np.array([0.01, 0.1, 0.25, 0.5, 1.5]) * cage.diameter:
+            edit, _ = _attempt(cage.extrude, face, distance)
+            assert edit is None or not ended
+            ended |= edit is None
+            points = _points_in_prism(cage, face, distance, rng)
+            if edit is not None:
+                assert not cage.contains(points).any()
+                assert edit.cage.contains(points).all()
+        any_refused |= ended
+    assert any_refused == (name != "star_shaped")
+
+
+def test_distances_between_edges():
+    """Distances between segments agree with a dense sample, parallel, crossing and collinear ones included."""
+    rng = np.random.default_rng(5)
+    one, other = rng.normal(size=(2, 60, 2, 3))
+    other[:10, 1] = other[:10, 0] + 2.0 * (one[:10, 1] - one[:10, 0])
+    other[10:20] = one[10:20, :1] + np.array([[1.3], [2.1]]) * (one[10:20, 1:] - one[10:20, :1])
+    other[20:30, 0] = one[20:30].mean(axis=1) - (other[20:30, 1] - one[20:30].mean(axis=1))
+    t = np.linspace(0.0, 1.0, 101)[:, None]
+    samples = [ends[:, None, 0] + t * (ends[:, None, 1] - ends[:, None, 0]) for ends in (one, other)]
+    sampled = np.linalg.norm(samples[0][:, :, None] - samples[1][:, None], axis=3).min(axis=(1, 2))
+    found = edge_distances(one, other)
+    assert (found <= sampled + 1e-12).all()
+    np.testing.assert_allclose(found, sampled, atol=0.06)
+    np.testing.assert_allclose(found[20:30], 0.0, atol=1e-12)
+    np.testing.assert_allclose(found[10:20], 0.3 * np.linalg.norm(one[10:20, 1] - one[10:20, 0], axis=1))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -117,7 +117,7 @@ def test_a_hollow_obstacle_encloses_a_piece(dimension):
         ([3.5 - 1e-6, 2.0, 2.0], 1.0, "meets face {right} of the cage"),
         ([2.0, 2.0, 2.0], 4.0, "meets face"),
         ([2.0, 2.0, 2.0], 6.0, "outside the cage"),
-        ([2.0, 2.0, 2.0], 1e-6, "not a cage within the tolerance"),
+        ([2.0, 2.0, 2.0], 1e-6, "too small for a cage with a tolerance of"),
     ],
 )
 def test_obstacles_that_are_not_inside(center, size, match, dimension):
@@ -155,6 +155,8 @@ def test_what_is_no_obstacle():
         cage.insert((cage.vertices, cage.faces))
     with pytest.raises(ValueError, match="obstacle of dimension 2 does not fit a cage of 3"):
         cage.insert(_unit(2))
+    with pytest.raises(ValueError, match=r"the obstacle, checked as a cage .* face 0 of the cage is degenerate"):
+        cage.insert(Cage(tetrahedron().vertices * [1, 1e-6, 1e-6] + 1.5, tetrahedron().faces, tolerance=1e-8))
     cut = Cut(_placed(box(), [2.0, 2.0, 2.0]), Blade([2.1, 2.0, 2.0], [0, 1, 0], [0, 0, 1]))
     with pytest.raises(ValueError, match="of the obstacle is a side of a cut"):
         cage.insert(cut.advance(to=0.5).cage)

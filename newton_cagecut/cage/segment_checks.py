@@ -9,10 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .intersection import segments_meet
+from .intersection import near_pairs, segments_meet
 from .polygon_mesh import PolygonMesh
-
-_CHUNK = 1 << 18
 
 
 def check_closed(mesh: PolygonMesh) -> None:
@@ -64,27 +62,13 @@ def check_crossings(mesh: PolygonMesh, tolerance: float) -> None:
     follower = np.empty(mesh.face_count, dtype=np.int64)
     follower[np.argsort(mesh.face_vertex[1::2])] = np.argsort(mesh.face_vertex[0::2])
     _check_folds(mesh, start, end, follower, tolerance)
-    step = max(1, _CHUNK // mesh.face_count)
-    for begin in range(0, mesh.face_count, step):
-        one = np.arange(begin, min(begin + step, mesh.face_count))
-        later = one[:, None] < np.arange(mesh.face_count)
-        i, j = np.nonzero(later & _boxes_meet(start, end, one, tolerance))
-        i = one[i]
-        apart = (follower[i] != j) & (follower[j] != i)
+    segments = np.stack([start, end], axis=1)
+    for i, j in near_pairs(segments, segments, tolerance):
+        apart = (i < j) & (follower[i] != j) & (follower[j] != i)
         i, j = i[apart], j[apart]
         meet = np.flatnonzero(segments_meet(start[i], end[i], start[j], end[j], tolerance))
         if len(meet):
             _refuse(mesh, int(i[meet[0]]), int(j[meet[0]]), "meet; move the vertices apart")
-
-
-def _boxes_meet(start: np.ndarray, end: np.ndarray, which: np.ndarray, tolerance: float) -> np.ndarray:
-    """Whether the bounding boxes of some segments come within the tolerance of those of all, shape (count, all)."""
-    low, high = np.minimum(start, end), np.maximum(start, end) + tolerance
-    meet = np.ones((len(which), len(start)), dtype=bool)
-    for axis in range(2):
-        meet &= low[which, axis, None] <= high[:, axis]
-        meet &= low[:, axis] <= high[which, axis, None]
-    return meet
 
 
 def _check_folds(mesh: PolygonMesh, start: np.ndarray, end: np.ndarray, follower: np.ndarray, tolerance: float) -> None:
