@@ -19,7 +19,7 @@ def check_inside(cage: Cage, points: np.ndarray, *, which: np.ndarray | None = N
 
     Args:
         cage: The cage.
-        points: Points, shape (point_count, dimension) [m].
+        points: Points, shape (point_count, 3) [m].
         which: Points to check, by index; all by default.
 
     Raises:
@@ -48,33 +48,20 @@ def boundary_distances(cage: Cage, points: np.ndarray) -> np.ndarray:
         points: Points, shape (point_count, dimension) [m].
     """
     corners = cage.vertices[cage.simplices]
-    distances = segment_distances if cage.dimension == 2 else triangle_distances
     step = max(1, _CHUNK // len(corners))
-    parts = [distances(points[i : i + step], corners).min(axis=1) for i in range(0, len(points), step)]
+    parts = [simplex_distances(points[i : i + step], corners).min(axis=1) for i in range(0, len(points), step)]
     return np.concatenate(parts) if parts else np.zeros(0)
 
 
-def segment_distances(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Distance of each point to each segment, shape (point_count, segment_count) [m].
+def simplex_distances(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Distance of each point to each segment in the plane, or each triangle in space, shape (point_count, count) [m].
 
     Args:
         points: Points, shape (point_count, dimension) [m].
-        corners: Segments, shape (segment_count, 2, dimension) [m].
+        corners: Segments, shape (count, 2, 2), or triangles, shape (count, 3, 3) [m].
     """
-    start, along = corners[:, 0], corners[:, 1] - corners[:, 0]
-    offset = points[:, None] - start
-    square = np.einsum("ij,ij->i", along, along)
-    t = np.clip(np.einsum("pij,ij->pi", offset, along) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
-    return np.linalg.norm(offset - t[..., None] * along, axis=2)
-
-
-def triangle_distances(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Distance of each point to each triangle, shape (point_count, triangle_count) [m].
-
-    Args:
-        points: Points, shape (point_count, 3) [m].
-        corners: Triangles, shape (triangle_count, 3, 3) [m].
-    """
+    if corners.shape[1] == 2:
+        return _segment_distances(points, corners[:, 0], corners[:, 1])
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     normal = np.cross(b - a, c - a)
     length = np.linalg.norm(normal, axis=1, keepdims=True)
@@ -82,7 +69,16 @@ def triangle_distances(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
     above = np.ones((len(points), len(corners)), dtype=bool)
     nearest = np.full((len(points), len(corners)), np.inf)
     for p, q in ((a, b), (b, c), (c, a)):
-        nearest = np.minimum(nearest, segment_distances(points, np.stack([p, q], axis=1)))
+        nearest = np.minimum(nearest, _segment_distances(points, p, q))
         above &= np.einsum("pij,ij->pi", points[:, None] - p, np.cross(normal, q - p)) >= 0.0
     height = np.abs(np.einsum("pij,ij->pi", points[:, None] - a, normal))
     return np.where(above & (length[:, 0] > 0.0), height, nearest)
+
+
+def _segment_distances(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Distance of each point to each segment."""
+    edge = end - start
+    offset = points[:, None] - start
+    square = np.einsum("ij,ij->i", edge, edge)
+    t = np.clip(np.einsum("pij,ij->pi", offset, edge) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    return np.linalg.norm(offset - t[..., None] * edge, axis=2)
