@@ -82,7 +82,7 @@ class _Player:
             try:
                 cut.resume(self.cage)
             except ValueError as error:
-                if "has grown across the front" in str(error) and {"extrude", "move_face"} & set(self.done):
+                if "cage has grown across the" in str(error) and {"extrude", "move_face"} & set(self.done):
                     return False
                 raise
         return self._advance(cut)

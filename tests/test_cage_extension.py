@@ -415,7 +415,7 @@ def test_growth_across_the_front(dimension):
     half = cut.advance(to=1.5).cage
     face = next(f for f in range(cage.face_count) if cage.walls[f].normal[0] < -0.5 and cage.walls[f].origin[0] > 1.5)
     grown = half.extrude(face, 0.7).cage
-    with pytest.raises(ValueError, match="begin a new cut where the cage has grown across the front"):
+    with pytest.raises(ValueError, match=r"begin a new cut where the cage has grown across the (front|tip)"):
         cut.resume(grown)
     assert cut.cage is half
     cut.resume(half.extrude(face, 0.4).cage)
