@@ -70,8 +70,12 @@ class Opening:
 
     def created_positions(self) -> np.ndarray:
         """Positions of the created vertices, shape (created_count, 3) [m]."""
-        tips = self.region.position[self.section.node_count + self.tip_chords]
-        return self.created_values(self.section.node_position, tips)
+        section, numbering, region = self.section, self.numbering, self.region
+        tips = region.position[section.node_count + self.tip_chords]
+        positions = self.created_values(section.node_position, tips)
+        for ids in (numbering.middle_plus[region.middles], numbering.middle_minus[region.middles]):
+            positions[ids - section.mesh.vertex_count] = region.position[region.middle_labels]
+        return positions
 
     def side_vertices(self) -> tuple[np.ndarray, np.ndarray]:
         """Vertices of the region's labels on the negative and on the positive side, shapes (label_count,)."""
