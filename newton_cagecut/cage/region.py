@@ -62,6 +62,12 @@ class Region:
         self.middle_labels = nodes + 2 * chords + self.middles
         """Labels of those, shape (middle_count,)."""
 
+    @property
+    def labels(self) -> np.ndarray:
+        """Labels behind and on the upper front: of nodes, where chords cross it, of vertices between, shape (count,)."""
+        nodes = np.flatnonzero(self.swept)
+        return np.concatenate([nodes, self._section.node_count + self.upper_chords, self.middle_labels])
+
     def _place_middles(self, chords: np.ndarray) -> np.ndarray:
         """Put vertices halfway along what is open of chords: of slits from their begin on, of borders at their end."""
         section, nodes, count = self._section, self._section.node_count, self._section.chord_count

@@ -62,7 +62,7 @@ class Strip:
             window: Heel, tip and start of the blade, which bound coordinates a, a and s [m].
 
         Raises:
-            ValueError: If the window lies inside the body, or the section does not close at the hinge.
+            ValueError: If the section does not close at the hinge.
         """
         self.base = base
         self.plane = plane
@@ -74,10 +74,11 @@ class Strip:
         """Wall of which the front is the strip's hinge."""
         self._opened_wall = plane.wall()
         self.section = Section(base.mesh, plane, hinge=hinge)
+        self.window: tuple[float, float, float] | None = None
+        """Heel, tip and start of the blade where they are, off the nodes [m]."""
         if window is not None:
             self.section = ClippedSection(self.section, *window, base.length_tolerance)
-        self.window = window
-        """Heel, tip and start of the blade [m]."""
+            self.window = self.section.window
         self._numbering = Numbering(self.section)
         self._reached_at = np.sort(self.section.node_coordinates[:, 1])
         touches = len(self._reached_at) > 0

@@ -38,14 +38,9 @@ class BodyCut:
     def __init__(self, body: CageBody, blade: Blade) -> None:
         if not body.definition.cuttable:
             raise ValueError(f"{body.label} was added with cuttable=False; it keeps no walk cache to cut with")
-        if isinstance(blade, Blade) and blade.window is not None:
-            raise ValueError(
-                "surfaces cannot follow a knife of finite width or one that starts inside yet; cut bodies with a blade "
-                "without width and start"
-            )
         self.body = body
         self.cut = Cut(body.cage, blade)
-        self._surface_cut = SurfaceCut(body.surface, self.cut.plane, self.cut.wall)
+        self._surface_cut = SurfaceCut(body.surface, self.cut.plane, self.cut.wall, window=self.cut.window)
 
     @property
     def depth(self) -> float:
