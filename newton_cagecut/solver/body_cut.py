@@ -144,11 +144,11 @@ class _Transfer:
         self._vertices = np.concatenate([edit.created, edit.moved])
         self._vertex_count = edit.cage.vertex_count
         points = edit.cage.vertices[self._vertices]
-        keys = np.asarray(edit.before.face_key)[edit.source_faces]
+        keys = np.where(edit.source_faces >= 0, edit.before.face_key[edit.source_faces], -1)
         self._rest = body.to_world(points)
         self._weights = np.zeros((0, edit.before.vertex_count))
         if len(points):
-            weights = body.coordinates.boundary_weights(points, keys, walks=_TRANSFER_WALKS)
+            weights = body.coordinates.weights_at(points, keys, walks=_TRANSFER_WALKS)
             self._weights = weights.astype(np.float64)
 
     def apply(self, states: Sequence[newton.State]) -> None:
