@@ -6,7 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from newton_cagecut.cage import Cage
+from newton_cagecut.cage import Blade, Cage
+from plane_shapes import check_outline, ring
 
 
 def box(size=(1.0, 1.0, 1.0)) -> Cage:
@@ -26,14 +27,6 @@ def prism(polygon: np.ndarray, height: float = 1.0) -> Cage:
     vertices = np.concatenate([np.c_[polygon, np.zeros(n)], np.c_[polygon, np.full(n, height)]])
     sides = [(i, (i + 1) % n, n + (i + 1) % n, n + i) for i in range(n)]
     return Cage(vertices, [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides])
-
-
-def ring(count: int, radius: float = 1.0, inner: float | None = None) -> np.ndarray:
-    """A regular polygon, or a star with ``count`` spikes if an inner radius is given, shape (n, 2)."""
-    n = count if inner is None else 2 * count
-    angle = np.arange(n) * 2.0 * np.pi / n + 0.1
-    r = np.where(np.arange(n) % 2 == 0, radius, radius if inner is None else inner)
-    return np.c_[r * np.cos(angle), r * np.sin(angle)]
 
 
 def hexagonal_prism() -> Cage:
@@ -122,13 +115,23 @@ SHAPES = {
 CONVEX = ("tetrahedron", "box", "hexagonal_prism", "merged_cube")
 
 
+def random_blade(rng: np.random.Generator, cage: Cage, margin: float = 0.2) -> Blade:
+    """A blade in any direction through the middle of a cage of either dimension."""
+    low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
+    origin = low + (high - low) * rng.uniform(margin, 1.0 - margin, cage.dimension)
+    return Blade(origin, *rng.normal(size=(cage.dimension - 1, cage.dimension)))
+
+
 def opened_characteristic(base: Cage, cage: Cage, wall: int) -> int:
     """Euler characteristic that opening a wall of a cut must leave.
 
     Each opened sheet adds twice its own characteristic (one, less one for each hole) less one for each stretch of its
     border along which its two sides stay together, vertices inside the body not counted: those that both sides share
-    there lie between two such stretches, and those of one side are hubs, of which the edge is no bridge.
+    there lie between two such stretches, and those of one side are hubs, of which the edge is no bridge. In 2D every
+    loop is closed and has none.
     """
+    if cage.dimension == 2:
+        return 0
     mesh = cage.mesh
     on_wall = cage.face_wall == wall
     side, face = cage.face_side[mesh.face], mesh.face
@@ -145,8 +148,15 @@ def opened_characteristic(base: Cage, cage: Cage, wall: int) -> int:
     return base.euler_characteristic + 2 * (sheets - bridges - fronts)
 
 
-def check_manifold(cage: Cage, volume: float, rtol: float = 1e-9) -> None:
-    """Assert what every edit must preserve; faces that were only nearly planar keep the volume only nearly."""
+def check_manifold(cage: Cage, volume: float, rtol: float = 1e-9, *, hollow: bool = False) -> None:
+    """Assert what every edit must preserve; faces that were only nearly planar keep the volume only nearly.
+
+    Only where the cage may be hollow, components may be the boundaries of cavities; sides of a cut that lies wholly
+    inside may always be.
+    """
+    if cage.dimension == 2:
+        check_outline(cage, volume, rtol)
+        return
     cage.validate()
     faces = cage.faces
     edges: dict[tuple[int, int], int] = {}
@@ -162,8 +172,9 @@ def check_manifold(cage: Cage, volume: float, rtol: float = 1e-9) -> None:
     assert euler <= 2 * cage.component_count
     np.testing.assert_allclose(cage.component_volumes.sum(), volume, rtol=rtol)
     assert (cage.piece_volumes > 0.0).all()
-    inner = ~cage.mesh.component_outward
-    np.testing.assert_allclose(cage.component_volumes[inner], 0.0, atol=1e-12 * cage.diameter**3)
+    if not hollow:
+        inner = cage.component_volumes[~cage.mesh.component_outward]
+        np.testing.assert_allclose(inner, 0.0, atol=1e-12 * cage.diameter**3)
     normals = np.array([cage.walls[w].normal for w in cage.face_wall]) * (1 - 2 * cage.face_side)[:, None]
     assert (np.einsum("ij,ij->i", normals, cage.mesh.face_area_vector) > 0.0).all()
     area = np.zeros(cage.face_count)

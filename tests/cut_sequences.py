@@ -11,9 +11,10 @@ import numpy as np
 from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
-from cage_shapes import SHAPES, check_manifold, opened_characteristic, prism, ring, voxels
+from cage_shapes import SHAPES, check_manifold, opened_characteristic, prism, voxels
 from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
 from newton_cagecut.usd import read_cage
+from plane_shapes import PLANES, ring, segment_crossings
 from surface_shapes import icosphere
 
 ASSETS = Path(__file__).parent.parent / "assets"
@@ -55,6 +56,8 @@ CAGES: dict[str, Callable[[], Cage]] = {
     **{path.stem: (lambda path=path: read_cage(path)) for path in sorted(ASSETS.glob("*_cage.usda"))},
 }
 """Every cage of the assets and generated ones."""
+EVERY: dict[str, Callable[[], Cage]] = CAGES | PLANES
+"""Those and the plane ones."""
 
 _number = st.integers(-5, 5)
 _vector = st.tuples(_number, _number, _number)
@@ -72,6 +75,8 @@ SEQUENCES = st.tuples(_blade, st.lists(st.one_of(_advance, _advance, _blade, _tu
 def make_blade(item: tuple, cage: Cage, earlier: list[Blade]) -> Blade | None:
     """A blade of some kind: free, through vertices, along an edge, in or almost in a face, beside an earlier blade."""
     _, kind, pick, share, edge, direction = item
+    if cage.dimension == 2:
+        return _make_plane_blade(item, cage, earlier)
     low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
     corner = cage.vertices[pick % cage.vertex_count]
     face = cage.mesh.face_vertex[cage.mesh.face_start[pick % cage.face_count] :][:3]
@@ -92,6 +97,31 @@ def make_blade(item: tuple, cage: Cage, earlier: list[Blade]) -> Blade | None:
                 return Blade(blade.origin + small * blade.normal, blade.edge, blade.direction)
             return Blade(blade.origin, blade.direction, blade.normal)
         return Blade(low + (high - low) * share, edge, direction)
+    except ValueError:
+        return None
+
+
+def _make_plane_blade(item: tuple, cage: Cage, earlier: list[Blade]) -> Blade | None:
+    """The same in the plane: free, through one or two vertices, along a segment, beside or across an earlier blade."""
+    _, kind, pick, share, edge, direction = item
+    low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
+    a, b = cage.vertices[list(cage.faces[pick % cage.face_count])]
+    small = [1e-8, 1e-6, 3e-6, 1e-4][pick % 4] * cage.diameter
+    try:
+        if kind == 1:
+            return Blade(a, direction[:2])
+        if kind == 2:
+            return Blade(a, b - a)
+        if kind == 3:
+            return Blade(a, cage.vertices[(7 * pick + 3) % cage.vertex_count] - a)
+        if kind == 4:
+            return Blade(a + small * np.array(edge[:2]), b - a + small * np.array(direction[:2]))
+        if kind >= 5 and earlier:
+            blade = earlier[pick % len(earlier)]
+            if kind == 5:
+                return Blade(blade.origin + small * blade.normal, blade.direction)
+            return Blade(blade.origin, blade.normal)
+        return Blade(low + (high - low) * share[:2], direction[:2])
     except ValueError:
         return None
 
@@ -123,8 +153,7 @@ def play(cage: Cage, sequence: tuple, check: Callable[[CageEdit, Cut, Cage], Non
             cut.resume(cage)
         if item[0] == "turn":
             if not cut.complete:
-                across = np.cross(cut.plane.normal, cut.plane.edge)
-                cut.turn(np.cos(item[2]) * across + np.sin(item[2]) * cut.plane.normal)
+                cut.turn(np.cos(item[2]) * cut.plane.across + np.sin(item[2]) * cut.plane.normal)
             continue
         base = cut._strips[-1][0].base
         edit = cut.advance(to=cut.depth + item[2] * max(0.0, cut.length - cut.depth))
@@ -144,7 +173,9 @@ def check_step(edit: CageEdit, cut: Cut, base: Cage, volume: float) -> None:
 
 
 def crossings(cage: Cage) -> int:
-    """Number of edges that pierce a face away from its border and their own ends."""
+    """Number of edges that pierce a face away from its border and their own ends, in 2D of segments that cross."""
+    if cage.dimension == 2:
+        return segment_crossings(cage)
     edges = cage.vertices[cage.mesh.edges] / cage.diameter
     return sum(_pierced(cage, edges[first : first + 128]) for first in range(0, len(edges), 128))
 

@@ -16,11 +16,11 @@ DEVICES = [str(device) for device in wp.get_devices()]
 
 
 def interior_points(cage: Cage, count: int, rng: np.random.Generator) -> np.ndarray:
-    """Uniform points inside a cage, shape (count, 3)."""
+    """Uniform points inside a cage, shape (count, dimension)."""
     low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
-    points = np.zeros((0, 3))
+    points = np.zeros((0, cage.dimension))
     while len(points) < count:
-        drawn = rng.uniform(low, high, (4 * count, 3))
+        drawn = rng.uniform(low, high, (4 * count, cage.dimension))
         points = np.concatenate([points, drawn[cage.contains(drawn)]])
     return points[:count]
 
@@ -36,14 +36,15 @@ def points_near_faces(cage: Cage, distance: float, rng: np.random.Generator) -> 
 
 def random_blade(rng: np.random.Generator, cage: Cage) -> Blade:
     """A blade of any direction whose plane passes near the middle of a cage."""
-    origin = cage.vertices.mean(axis=0) + 0.1 * cage.diameter * rng.uniform(-1.0, 1.0, 3)
-    return Blade(origin, rng.normal(size=3), rng.normal(size=3))
+    origin = cage.vertices.mean(axis=0) + 0.1 * cage.diameter * rng.uniform(-1.0, 1.0, cage.dimension)
+    return Blade(origin, *rng.normal(size=(cage.dimension - 1, cage.dimension)))
 
 
 def crossing_blade(rng: np.random.Generator, edits: list[CageEdit]) -> Blade:
     """A blade whose plane passes through what earlier edits swept."""
     swept = np.concatenate([edit.swept_simplices for edit in edits])
-    return Blade(swept[len(swept) // 2].mean(axis=0), rng.normal(size=3), rng.normal(size=3))
+    middle = swept[len(swept) // 2].mean(axis=0)
+    return Blade(middle, *rng.normal(size=(len(middle) - 1, len(middle))))
 
 
 def middle_cut(cage: Cage) -> Cut:
@@ -83,7 +84,7 @@ def assert_reproduces(coordinates: HarmonicCoordinates, points: np.ndarray, *, g
         allowed = np.maximum(1e-4, 2.0**-21 * cage.diameter * np.abs(slopes).max(axis=(1, 2)))
         assert (np.abs(slopes.sum(axis=1)).max(axis=1) * cage.diameter <= allowed).all()
         identity = np.einsum("vi,pvj->pij", cage.vertices - points.mean(axis=0), slopes)
-        assert (np.abs(identity - np.eye(3)).max(axis=(1, 2)) <= allowed).all()
+        assert (np.abs(identity - np.eye(cage.dimension)).max(axis=(1, 2)) <= allowed).all()
 
 
 def trilinear(cage: Cage, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -53,7 +53,12 @@ def test_wall_of_a_plane():
         (([0, 0, 0], [1, 2, 3], [-2, -4, -6]), "parallel"),
         (([0, np.nan, 0], [1, 0, 0], [0, 1, 0]), "origin is not finite"),
         (([0, 0, 0], [np.inf, 0, 0], [0, 1, 0]), "edge is not finite"),
-        (([0, 0], [1, 0, 0], [0, 1, 0]), r"origin must have shape \(3,\)"),
+        (([0], [1, 0, 0], [0, 1, 0]), r"origin must have shape \(3,\), or \(2,\) in the plane"),
+        (([0, 0, 0], [1, 0], [0, 1, 0]), r"edge must have shape \(3,\), as its origin has, got \(2,\)"),
+        (([0, 0], [0, 1, 0]), r"direction must have shape \(2,\), as its origin has, got \(3,\)"),
+        (([0, 0], [0, 0]), "direction is zero"),
+        (([0, 0], [1, np.nan]), "direction is not finite"),
+        (([0, 0], [1, 0], [0, 1]), r"has no edge; give Blade\(origin, direction\)"),
     ],
 )
 def test_bad_blades_are_refused(arguments, match):
@@ -63,9 +68,15 @@ def test_bad_blades_are_refused(arguments, match):
 
 
 def test_wrong_types_are_refused():
-    """Text is no vector."""
+    """Text is no vector, and a direction must be given."""
     with pytest.raises(TypeError, match="direction must be three numbers"):
         Blade([0, 0, 0], [1, 0, 0], "up")
+    with pytest.raises(TypeError, match="direction must be two numbers"):
+        Blade([0, 0], "up")
+    with pytest.raises(TypeError, match="in space needs an edge and a direction"):
+        Blade([0, 0, 0], [1, 0, 0])
+    with pytest.raises(TypeError, match="in the plane needs a direction"):
+        Blade([0, 0])
 
 
 def test_tiny_and_huge_directions():

@@ -9,39 +9,44 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cage_shapes import CONVEX, SHAPES, check_manifold, opened_characteristic
-from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
+from cage_shapes import CONVEX, SHAPES, check_manifold, opened_characteristic, random_blade
+from newton_cagecut.cage import Blade, Cage, CageEdit, Cut, check_inside
+from plane_shapes import PLANES
 
+EVERY = SHAPES | PLANES
 RANDOM = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 
 
 def _random_blade(rng: np.random.Generator, cage: Cage) -> Blade:
-    low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
-    origin = low + (high - low) * rng.uniform(0.1, 0.9, 3)
+    """A blade in any direction, or one along axes and perhaps through a vertex."""
+    blade, dimension = random_blade(rng, cage, 0.1), cage.dimension
     if rng.random() < 0.3:
-        axes = np.eye(3)[rng.permutation(3)] * rng.choice([-1.0, 1.0], 3)[:, None]
-        return Blade(cage.vertices[rng.integers(cage.vertex_count)] if rng.random() < 0.5 else origin, axes[0], axes[1])
-    return Blade(origin, rng.normal(size=3), rng.normal(size=3))
+        axes = np.eye(dimension)[rng.permutation(dimension)] * rng.choice([-1.0, 1.0], dimension)[:, None]
+        corner = cage.vertices[rng.integers(cage.vertex_count)]
+        return Blade(corner if rng.random() < 0.5 else blade.origin, *axes[1:])
+    return blade
 
 
 def _awkward_blade(rng: np.random.Generator, cage: Cage, earlier: list[Blade]) -> Blade:
-    """A blade in, almost in, parallel to or perpendicular to an earlier one, or through three vertices."""
+    """A blade in, almost in, parallel to or perpendicular to an earlier one, or through as many vertices as it can."""
+    dimension = cage.dimension
     if not earlier or rng.random() < 0.3:
-        corners = cage.vertices[rng.permutation(cage.vertex_count)[:3]]
+        corners = cage.vertices[rng.permutation(cage.vertex_count)[:dimension]]
         try:
-            return Blade(corners[0], corners[1] - corners[0], corners[2] - corners[0])
+            return Blade(corners[0], *(corners[1:] - corners[0]))
         except ValueError:
             return _random_blade(rng, cage)
     blade = earlier[rng.integers(len(earlier))]
     small = rng.choice([1e-7, 1e-6, 3e-6, 1e-5, 1e-3])
+    edge = (blade.edge,)[: dimension - 2]
     corner = cage.vertices[rng.integers(cage.vertex_count)]
     return [
         blade,
-        Blade(blade.origin, blade.edge, -blade.direction),
-        Blade(blade.origin + small * cage.diameter * blade.normal, blade.edge, blade.direction),
-        Blade(corner, blade.normal, blade.direction),
-        Blade(corner, blade.direction, blade.edge),
-        Blade(blade.origin, blade.edge + small * rng.normal(size=3), blade.direction + small * rng.normal(size=3)),
+        Blade(blade.origin, *edge, -blade.direction),
+        Blade(blade.origin + small * cage.diameter * blade.normal, *edge, blade.direction),
+        Blade(corner, *(blade.normal, blade.direction)[: dimension - 1]),
+        Blade(corner, blade.direction, *edge),
+        Blade(blade.origin, *(axis + small * rng.normal(size=dimension) for axis in (*edge, blade.direction))),
     ][rng.integers(6)]
 
 
@@ -56,8 +61,11 @@ def _depths(rng: np.random.Generator, cut: Cut) -> list[float]:
     return sorted(max(0.0, depth) for depth in depths)
 
 
-def _area(triangles: np.ndarray) -> float:
-    edges = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+def _measure(simplices: np.ndarray) -> float:
+    """Area of triangles, or length of segments."""
+    if simplices.shape[1] == 2:
+        return float(np.linalg.norm(simplices[:, 1] - simplices[:, 0], axis=1).sum())
+    edges = np.cross(simplices[:, 1] - simplices[:, 0], simplices[:, 2] - simplices[:, 0])
     return 0.5 * float(np.linalg.norm(edges, axis=1).sum())
 
 
@@ -81,27 +89,30 @@ def _check_edit(edit: CageEdit, cut: Cut) -> None:
 
 
 def _check_sources(edit: CageEdit) -> None:
-    """Created and moved vertices lie in the plane of their source face, and within it."""
+    """Created and moved vertices lie in the plane of their source face, and within it; tips in 2D inside the body."""
     before = edit.before
     ids = np.concatenate([edit.created, edit.moved])
     assert edit.source_faces.shape == ids.shape
-    for vertex, face in zip(ids.tolist(), edit.source_faces.tolist(), strict=True):
+    inside = edit.source_faces < 0
+    assert before.dimension == 2 or not inside.any()
+    check_inside(before, edit.cage.vertices[ids[inside]])
+    for vertex, face in zip(ids[~inside].tolist(), edit.source_faces[~inside].tolist(), strict=True):
         wall = before.walls[before.face_wall[face]]
         point = edit.cage.vertices[vertex]
         assert abs((point - wall.origin) @ wall.normal) < 1e-9 * before.diameter
-        triangles = before.vertices[before.triangles[before.triangle_face == face]]
-        assert min(_excess(point, t) for t in triangles) < 1e-9 * before.diameter**2
+        simplices = before.vertices[before.simplices[before.simplex_face == face]]
+        assert min(_excess(point, s) for s in simplices) < 1e-9 * before.diameter**2
 
 
-def _excess(point: np.ndarray, triangle: np.ndarray) -> float:
-    """Area that a point adds to a triangle; zero inside."""
-    a, b, c = triangle
-    parts = np.array([[point, b, c], [a, point, c], [a, b, point]])
-    return _area(parts) - _area(triangle[None])
+def _excess(point: np.ndarray, simplex: np.ndarray) -> float:
+    """Area or length that a point adds to a triangle or a segment; zero inside."""
+    parts = np.repeat(simplex[None], len(simplex), axis=0)
+    parts[np.arange(len(simplex)), np.arange(len(simplex))] = point
+    return _measure(parts) - _measure(simplex[None])
 
 
 def _check_sides(cut: Cut, swept: float) -> None:
-    """Both sides of the cut have the swept area."""
+    """Both sides of the cut have the swept area, or length."""
     area = np.linalg.norm(cut.cage.mesh.face_area_vector, axis=1)
     for side in (0, 1):
         np.testing.assert_allclose(area[cut.cage.face_key == 2 * cut.wall + side].sum(), swept, atol=1e-9)
@@ -124,19 +135,19 @@ def _advance(cut: Cut, depths: list[float], volume: float, checked: bool) -> Non
         for vertex, position in fixed.items():
             np.testing.assert_array_equal(edit.cage.vertices[vertex], position)
         fixed = {v: edit.cage.vertices[v] for v in range(edit.cage.vertex_count) if v not in tips}
-        swept += _area(edit.swept_simplices)
+        swept += _measure(edit.swept_simplices)
         if checked:
             _check_edit(edit, cut)
     _check_sides(cut, swept)
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", EVERY)
 @settings(max_examples=12, **RANDOM)
 @given(st.integers(0, 2**32 - 1))
 def test_random_cuts(name, seed):
-    """Random cuts in random steps, each crossing the ones before, keep a closed manifold of the same volume."""
+    """Random cuts in random steps, each crossing the ones before, keep a closed manifold of the same volume or area."""
     rng = np.random.default_rng(seed)
-    cage = SHAPES[name]()
+    cage = EVERY[name]()
     volume = cage.volume
     for number in range(rng.integers(1, 4)):
         cut = Cut(cage, _random_blade(rng, cage))
@@ -146,13 +157,13 @@ def test_random_cuts(name, seed):
         cage = cut.cage
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", EVERY)
 @settings(max_examples=10, **RANDOM)
 @given(st.integers(0, 2**32 - 1))
 def test_awkward_cuts(name, seed):
     """Cuts in or almost in the plane of an earlier one, or through vertices, keep all that too."""
     rng = np.random.default_rng(seed)
-    cage = SHAPES[name]()
+    cage = EVERY[name]()
     volume, blades = cage.volume, []
     for _ in range(rng.integers(2, 5)):
         blades.append(_awkward_blade(rng, cage, blades))
@@ -161,13 +172,13 @@ def test_awkward_cuts(name, seed):
         cage = cut.cage
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", EVERY)
 @settings(max_examples=8, **RANDOM)
 @given(st.integers(0, 2**32 - 1))
 def test_one_step_is_many(name, seed):
     """One advance gives exactly the cage that many give, ids and last bits included."""
     rng = np.random.default_rng(seed)
-    cage = SHAPES[name]()
+    cage = EVERY[name]()
     for _ in range(2):
         blade = _random_blade(rng, cage)
         many, one = Cut(cage, blade), Cut(cage, blade)

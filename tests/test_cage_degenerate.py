@@ -7,9 +7,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cage_shapes import box, check_manifold
-from cut_sequences import CAGES, crossings
+from cage_shapes import box, check_manifold, random_blade
+from cut_sequences import EVERY, crossings
 from newton_cagecut.cage import Blade, Cut
+from plane_shapes import PLANES, square
 
 NAMES = ("box", "merged_cube", "star_prism", "square_torus", "collinear_prism", "convex")
 
@@ -28,7 +29,7 @@ def _through(cage, blade: Blade):
 @pytest.mark.parametrize("name", NAMES)
 def test_planes_through_features(name):
     """Planes through a vertex, along an edge, in a face and almost in a face."""
-    cage = CAGES[name]()
+    cage = EVERY[name]()
     for face in range(0, cage.face_count, max(1, cage.face_count // 5)):
         a, b, c = cage.vertices[list(cage.faces[face][:3])]
         if np.linalg.norm(np.cross(b - a, c - a)) < 1e-9:
@@ -40,47 +41,74 @@ def test_planes_through_features(name):
             _through(cage, Blade(a, b - a, c - a + tilt * np.array([0.3, 0.5, -0.8])))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", PLANES)
+def test_lines_through_features(name):
+    """Lines through a vertex, through two, along a segment and almost along it."""
+    cage = PLANES[name]()
+    for a, b in cage.vertices[cage.simplices]:
+        _through(cage, Blade(a, [1.0, 0.1]))
+        for tilt in (0.0, 1e-9, 1e-6, 1e-4):
+            _through(cage, Blade(a, b - a + tilt * np.array([0.3, -0.8])))
+        for other in cage.vertices[:: max(1, cage.vertex_count // 4)]:
+            if (other != a).any():
+                _through(cage, Blade(a, other - a))
+
+
+@pytest.mark.parametrize("name", [*NAMES, *PLANES])
 def test_fronts_at_every_edge(name):
     """A front that stops exactly where the section meets an edge, or a hair before or behind."""
-    cage = CAGES[name]()
+    cage = EVERY[name]()
     center = cage.vertices.mean(axis=0) + 0.01
-    for edge, direction in (([0, 0, 1], [1, 0.2, 0]), ([0, 1, 0], [1, 0, 0]), ([0.2, 1, 0.1], [0, 0.3, 1])):
-        reached = np.sort(Cut(cage, Blade(center, edge, direction)).section.node_coordinates[:, 1])
+    blades = [([0, 0, 1], [1, 0.2, 0]), ([0, 1, 0], [1, 0, 0]), ([0.2, 1, 0.1], [0, 0.3, 1])]
+    for vectors in blades if cage.dimension == 3 else [([1, 0.2],), ([1, 0],), ([0.3, 1],)]:
+        reached = np.sort(Cut(cage, Blade(center, *vectors)).section.node_coordinates[:, 1])
         for hair in (-1e-12, 0.0, 1e-12, 1e-7):
-            cut = Cut(cage, Blade(center, edge, direction))
+            cut = Cut(cage, Blade(center, *vectors))
             for depth in np.unique(np.maximum(0.0, reached - reached[0] + hair)):
                 check_manifold(cut.advance(to=depth).cage, cage.volume)
             assert cut.cage.vertices[:, 0].size > cage.vertex_count
 
 
-def test_slivers():
+def _middle(x: float, *vectors) -> Blade:
+    """A blade through (x, 1/2, ...), of the dimension that its vectors have."""
+    return Blade([x, 0.5, 0.5][: len(vectors[0])], *vectors)
+
+
+CUBES = [
+    (box, ([0, 1, 0], [0, 0, -1]), ([1, 0.1, 0], [0, 0.2, -1])),
+    (square, ([0, -1],), ([1, 0.1],)),
+]
+
+
+@pytest.mark.parametrize(("cube", "down", "across"), CUBES)
+def test_slivers(cube, down, across):
     """Cuts a hair beside each other leave slivers that later cuts cross."""
-    cage = box()
+    cage = cube()
     for gap in (1e-8, 1e-6, 5e-6, 1e-4):
-        cut_cage = _through(cage, Blade([0.5, 0.5, 0.5], [0, 1, 0], [0, 0, -1]))
-        cut_cage = _through(cut_cage, Blade([0.5 + gap, 0.5, 0.5], [0, 1, 0], [0, 0, -1]))
+        cut_cage = _through(cage, _middle(0.5, *down))
+        cut_cage = _through(cut_cage, _middle(0.5 + gap, *down))
         assert cut_cage.component_count == 3
-        cut_cage = _through(cut_cage, Blade([0.5, 0.5, 0.5], [1, 0.1, 0], [0, 0.2, -1]))
+        cut_cage = _through(cut_cage, _middle(0.5, *across))
         assert cut_cage.component_count == 6
 
 
-def test_the_same_blade_again():
+@pytest.mark.parametrize(("cube", "down", "across"), CUBES)
+def test_the_same_blade_again(cube, down, across):
     """A blade that cuts where it cut before cuts off a sliver of the tolerance's width, time and again."""
-    cage = box()
+    cage = cube()
     for pieces in (2, 3, 4, 5):
-        cage = _through(cage, Blade([0.5, 0.5, 0.5], [0, 1, 0], [0, 0, -1]))
+        cage = _through(cage, _middle(0.5, *down))
         assert cage.component_count == pieces
 
 
-@pytest.mark.parametrize("name", ["box", "star_prism", "square_torus"])
+@pytest.mark.parametrize("name", ["box", "star_prism", "square_torus", "square", "star", "annulus"])
 def test_twenty_four_cuts(name):
     """Twenty-four cuts of one cage, partial and complete, each crossing those before."""
     rng = np.random.default_rng(4)
-    cage = CAGES[name]()
-    base, low, high = cage, cage.vertices.min(axis=0), cage.vertices.max(axis=0)
+    cage = EVERY[name]()
+    base = cage
     for number in range(24):
-        blade = Blade(low + (high - low) * rng.uniform(0.3, 0.7, 3), rng.normal(size=3), rng.normal(size=3))
+        blade = random_blade(rng, cage, 0.3)
         cut = Cut(cage, blade)
         cage = cut.advance(to=(0.5 if number % 2 else 1.1) * cut.length).cage
         check_manifold(cage, base.volume)

@@ -9,10 +9,12 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from cage_shapes import SHAPES, box, check_manifold, opened_characteristic, u_shape
+from cage_shapes import SHAPES, box, check_manifold, opened_characteristic, random_blade, u_shape
 from newton_cagecut.cage import Blade, Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from plane_shapes import PLANES, outline, rectangle
 
+EVERY = SHAPES | PLANES
 RANDOM = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 DOWN = Blade([0.513, 0.5, 0.5], [0, 1, 0], [0, 0, -1])
 
@@ -20,8 +22,7 @@ DOWN = Blade([0.513, 0.5, 0.5], [0, 1, 0], [0, 0, -1])
 def _turned(rng: np.random.Generator, cut: Cut, most: float) -> np.ndarray:
     """The cut's direction turned about its edge by a random angle of up to ``most`` radians."""
     plane, angle = cut.plane, rng.uniform(-most, most)
-    across = np.cross(plane.normal, plane.edge)
-    return np.cos(angle) * across + np.sin(angle) * plane.normal + rng.uniform(-0.2, 0.2) * plane.edge
+    return np.cos(angle) * plane.across + np.sin(angle) * plane.normal + rng.uniform(-0.2, 0.2) * plane.edge
 
 
 def _step(cut: Cut, to: float, base: Cage, volume: float) -> None:
@@ -58,50 +59,52 @@ def test_a_bent_cut_of_a_box():
     assert cut.length == pytest.approx(0.4 + 0.487, abs=1e-5)
 
 
-def test_zero_turn_goes_straight_on():
+@pytest.mark.parametrize("name", ["box", "star_prism", "u_shape", "square_torus", *PLANES])
+def test_zero_turn_goes_straight_on(name):
     """A turn by nothing gives the volumes and pieces of one straight cut, with a second wall in the same plane."""
-    for name in ("box", "star_prism", "u_shape", "square_torus"):
-        base = SHAPES[name]()
-        blade = Blade(base.vertices.mean(axis=0) + 0.01, [0.1, 1.0, 0.2], [1.0, 0.1, 0.3])
-        one, two = Cut(base, blade), Cut(base, blade)
-        one.advance(to=1e3)
-        two.advance(to=0.5 * two.length)
-        two.turn(two.plane.direction)
-        two.advance(to=1e3)
-        check_manifold(two.cage, base.volume)
-        np.testing.assert_allclose(sorted(two.cage.component_volumes), sorted(one.cage.component_volumes), rtol=1e-6)
-        assert two.cage.euler_characteristic == one.cage.euler_characteristic
-        assert len(two.cage.walls) == len(one.cage.walls) + 1
+    base = EVERY[name]()
+    vectors = np.array([[0.1, 1.0, 0.2], [1.0, 0.1, 0.3]])[3 - base.dimension :, : base.dimension]
+    blade = Blade(base.vertices.mean(axis=0) + 0.01, *vectors)
+    one, two = Cut(base, blade), Cut(base, blade)
+    one.advance(to=1e3)
+    two.advance(to=0.45 * two.length)
+    two.turn(two.plane.direction)
+    two.advance(to=1e3)
+    check_manifold(two.cage, base.volume)
+    np.testing.assert_allclose(sorted(two.cage.component_volumes), sorted(one.cage.component_volumes), rtol=1e-5)
+    assert two.cage.euler_characteristic == one.cage.euler_characteristic
+    assert len(two.cage.walls) == len(one.cage.walls) + 1
 
 
-def test_scalpel_around_a_circle():
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_scalpel_around_a_circle(dimension):
     """Twelve short strips in a circle, each turned by 30 degrees, carve a core that the last of them frees."""
-    base = box((4.0, 3.0, 1.0))
-    cut = Cut(base, Blade([1.5, 0.7, 0.5], [0, 0, 1], [0, 1, 0]))
+    base = box((4.0, 3.0, 1.0)) if dimension == 3 else outline(rectangle((0, 0), (4, 3)))
+    edge = ([0, 0, 1],) if dimension == 3 else ()
+    cut = Cut(base, Blade([1.5, 0.7, 0.5][:dimension], *edge, [0, 1, 0][:dimension]))
     cut.advance(to=1.4)
     side, angle = 0.45, 0.0
     for _ in range(14):
         angle += np.pi / 6.0
-        cut.turn([np.sin(angle), np.cos(angle), 0.0])
+        cut.turn([np.sin(angle), np.cos(angle), 0.0][:dimension])
         cut.advance(to=cut.depth + side)
         check_manifold(cut.cage, base.volume)
-    assert len(cut.cage.walls) == 6 + 15
+    assert len(cut.cage.walls) == base.face_count + 15
     assert cut.cage.component_count == 2
     apothem = 0.5 * side / np.tan(np.pi / 12.0)
     assert min(cut.cage.component_volumes) == pytest.approx(12 * 0.5 * side * apothem, rel=0.2)
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", EVERY)
 @settings(max_examples=8, **RANDOM)
 @given(st.integers(0, 2**32 - 1))
 def test_random_turns(name, seed):
     """Cuts with random turns, crossing earlier ones, keep a closed manifold of the same volume."""
     rng = np.random.default_rng(seed)
-    cage = SHAPES[name]()
+    cage = EVERY[name]()
     volume = cage.volume
     for _ in range(2):
-        low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
-        cut = Cut(cage, Blade(low + (high - low) * rng.uniform(0.2, 0.8, 3), rng.normal(size=3), rng.normal(size=3)))
+        cut = Cut(cage, random_blade(rng, cage))
         for _ in range(4):
             base = cut.cage
             for _ in range(rng.integers(1, 3)):
@@ -157,18 +160,15 @@ def test_turning_in_the_gap_between_legs():
     assert sorted(cut.cage.component_volumes)[0] == pytest.approx(0.8 * 0.5)
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", EVERY)
 @settings(max_examples=8, **RANDOM)
 @given(st.integers(0, 2**32 - 1))
 @example(55)
 def test_cuts_side_by_side(name, seed):
     """Two cuts that advance in turn, crossing each other, keep a closed manifold and every vertex's id."""
     rng = np.random.default_rng(seed)
-    cage = SHAPES[name]()
-    volume, low, high = cage.volume, cage.vertices.min(axis=0), cage.vertices.max(axis=0)
-    blades = [
-        Blade(low + (high - low) * rng.uniform(0.2, 0.8, 3), rng.normal(size=3), rng.normal(size=3)) for _ in range(2)
-    ]
+    cage = EVERY[name]()
+    volume, blades = cage.volume, [random_blade(rng, cage) for _ in range(2)]
     cuts = [Cut(cage, blade) for blade in blades]
     for part in (0.2, 0.4, 0.7, 1.05):
         for cut in cuts:
@@ -176,7 +176,7 @@ def test_cuts_side_by_side(name, seed):
                 cut.resume(cage)
             _step(cut, max(cut.depth, part * cut.length), cut._strips[-1][0].base, volume)
             cage = cut.cage
-    whole = Cut(Cut(SHAPES[name](), blades[0]).advance(to=1e3).cage, blades[1]).advance(to=1e3).cage
+    whole = Cut(Cut(EVERY[name](), blades[0]).advance(to=1e3).cage, blades[1]).advance(to=1e3).cage
     np.testing.assert_allclose(sorted(cage.component_volumes), sorted(whole.component_volumes), atol=1e-4 * volume)
 
 

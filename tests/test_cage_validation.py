@@ -8,19 +8,20 @@ import numpy as np
 import pytest
 
 from cage_shapes import SHAPES, box, check_manifold, prism, square_torus, tetrahedron, voxels
-from newton_cagecut.cage import Cage
+from newton_cagecut.cage import Cage, boundary_distances, check_inside
+from plane_shapes import PLANES
 
 
 def _parts(cage: Cage) -> tuple[np.ndarray, list[tuple[int, ...]]]:
     return np.array(cage.vertices), list(cage.faces)
 
 
-@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("name", [*SHAPES, *PLANES])
 def test_shapes_are_accepted(name):
     """Every shape of the tests is a valid cage with one wall a face."""
-    cage = SHAPES[name]()
+    cage = (SHAPES | PLANES)[name]()
     check_manifold(cage, cage.volume)
-    assert cage.euler_characteristic == (0 if name == "square_torus" else 2)
+    assert cage.euler_characteristic == (0 if name == "square_torus" or cage.dimension == 2 else 2)
     assert len(cage.walls) == cage.face_count
     assert cage.face_wall.tolist() == list(range(cage.face_count))
     assert not any(wall.two_sided for wall in cage.walls)
@@ -77,6 +78,20 @@ def test_contains_agrees_with_ray_parity(name):
     assert 0 < inside.sum() < 300
     np.testing.assert_array_equal(cage.contains(points), inside)
     np.testing.assert_array_equal(cage.piece_of(points), np.where(inside, 0, -1))
+
+
+@pytest.mark.parametrize("name", ["box", "u_shape", "star_prism", *PLANES])
+def test_points_off_the_boundary(name):
+    """Points a hair inside of a face or outside are told apart, and lie as far from the boundary as they were moved."""
+    cage = (SHAPES | PLANES)[name]()
+    center = cage.vertices[cage.simplices].mean(axis=1)
+    normal = np.array([cage.walls[face].normal for face in cage.simplex_face])
+    assert not cage.contains(center + 1e-3 * normal).any()
+    assert cage.contains(center - 1e-3 * normal).all()
+    np.testing.assert_allclose(boundary_distances(cage, center - 1e-3 * normal), 1e-3, rtol=1e-9)
+    check_inside(cage, center - 1e-3 * normal)
+    with pytest.raises(ValueError, match=rf"{len(center)} of {len(center)} points lie outside .* by 0.001 m"):
+        check_inside(cage, center + 1e-3 * normal)
 
 
 def test_points_in_the_plane_of_a_concave_face_are_outside():
@@ -214,7 +229,8 @@ def test_bad_indices_and_numbers():
     _refused("no faces", vertices, [])
     _refused("face 0 of the cage must be a sequence of integers", vertices, [(0.0, 1.0, 2.0)], TypeError)
     _refused("must be numbers", [["a", "b", "c"]], faces, TypeError)
-    _refused(r"shape \(vertex_count, 3\), got \(4, 2\)", vertices[:, :2], faces)
+    _refused(r"shape \(vertex_count, 3\), or \(vertex_count, 2\), got \(4, 1\)", vertices[:, :1], faces)
+    _refused("face 0 of the cage has 3 vertices; a face of a plane cage is a segment", vertices[:, :2], faces)
     vertices[2, 1] = np.nan
     _refused("vertex 2 of the cage is not finite", vertices, faces)
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from cut_sequences import CAGES, SEQUENCES, check_step, long_sequence, play
+from cut_sequences import CAGES, EVERY, SEQUENCES, check_step, long_sequence, play
 from newton_cagecut.harmonic import HarmonicCoordinates
 
 COUNT = 2000 if os.environ.get("CAGECUT_NIGHTLY") == "1" else 200
@@ -29,11 +29,11 @@ _cages = {}
 def cage_of(name: str):
     """A cage of the collection, built once."""
     if name not in _cages:
-        _cages[name] = CAGES[name]()
+        _cages[name] = EVERY[name]()
     return _cages[name]
 
 
-@pytest.mark.parametrize("name", CAGES)
+@pytest.mark.parametrize("name", EVERY)
 @settings(max_examples=EACH, **RANDOM)
 @given(SEQUENCES)
 def test_random_sequences(name, sequence):
@@ -42,7 +42,7 @@ def test_random_sequences(name, sequence):
     play(cage, sequence, lambda edit, cut, base: check_step(edit, cut, base, cage.volume))
 
 
-@pytest.mark.parametrize("name", CAGES)
+@pytest.mark.parametrize("name", EVERY)
 def test_long_sequences(name):
     """Sequences of 26 operations, three a cage or thirty in the nightly run; the seed is printed with a failure."""
     cage = cage_of(name)

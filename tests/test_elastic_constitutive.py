@@ -17,13 +17,17 @@ from newton_cagecut.elastic.stiffness import Stiffness, apply_stiffness, make_st
 
 MU, LAM = 2.0, 3.0
 MODELS = tuple(CONSTITUTIVE_MODELS)
+PLANE = np.pad(np.ones((2, 2)), (0, 1))
+"""One where a plane F may change."""
+
+solid_and_plane = pytest.mark.parametrize("plane", [False, True], ids=["solid", "plane"])
 
 
 @functools.cache
-def make_probe(model):
+def make_probe(model, plane):
     """A kernel that evaluates a model at many deformation gradients."""
     energy, stress = CONSTITUTIVE_MODELS[model].energy, CONSTITUTIVE_MODELS[model].stress
-    stiffness_function = make_stiffness_function(model)
+    stiffness_function = make_stiffness_function(model, plane)
 
     @wp.kernel(enable_backward=False, module="unique")
     def probe(
@@ -50,7 +54,7 @@ def make_probe(model):
 GRADIENT = np.array([0.3, -0.7, 0.5])
 
 
-def evaluate(model, F):
+def evaluate(model, F, plane=False):
     """Energies (n,), stresses (n, 3, 3), projected Hessians (n, 9, 9) and vertex blocks (n, 3, 3)."""
     F = np.asarray(F, dtype=np.float64).reshape(-1, 3, 3)
     n = len(F)
@@ -58,18 +62,37 @@ def evaluate(model, F):
     outputs += (wp.zeros((n, 9), dtype=wp.mat33, device="cpu"), wp.zeros(n, dtype=wp.mat33, device="cpu"))
     inputs = [wp.array(F, dtype=wp.mat33d, device="cpu")]
     inputs += [wp.array(np.eye(9).reshape(9, 3, 3), dtype=wp.mat33, device="cpu"), wp.vec3(*GRADIENT)]
-    wp.launch(make_probe(model), dim=n, inputs=inputs, outputs=outputs, device="cpu")
+    wp.launch(make_probe(model, plane), dim=n, inputs=inputs, outputs=outputs, device="cpu")
     energies, stresses, products, blocks = (a.numpy() for a in outputs)
     return energies, stresses, products.reshape(n, 9, 9), blocks
 
 
 def true_hessians(model, F):
     """Central differences of the stress, shape (n, 9, 9), symmetric to their accuracy."""
+    return difference(lambda shifted: evaluate(model, shifted)[1], F)
+
+
+def difference(function, F):
+    """Derivative by F of a function from matrices to matrices, shape (n, 9, 9)."""
     h = 1e-6
     steps = h * np.eye(9).reshape(9, 3, 3)
-    shifted = np.stack([F[:, None] + steps, F[:, None] - steps])
-    stress = evaluate(model, shifted)[1].reshape(2, len(F), 9, 9)
-    return (stress[0] - stress[1]) / (2.0 * h)
+    values = [function((F[:, None] + step).reshape(-1, 3, 3)).reshape(len(F), 9, 9) for step in (steps, -steps)]
+    return (values[0] - values[1]) / (2.0 * h)
+
+
+def cofactors(F):
+    """Cofactor matrices: the derivative of the determinant."""
+    columns = [F[:, :, k] for k in range(3)]
+    return np.stack([np.cross(columns[k - 2], columns[k - 1]) for k in range(3)], axis=2)
+
+
+def kept_hessians(model, F):
+    """The Hessians that the stiffness is made from: without what tension adds to them in the neo-Hookean model."""
+    hessians = true_hessians(model, F)
+    if model == "neo_hookean":
+        tension = np.maximum((LAM + MU) * (np.linalg.det(F) - 1.0) - MU, 0.0)
+        hessians -= tension[:, None, None] * difference(cofactors, F)
+    return hessians
 
 
 def random_gradients(count=60):
@@ -85,6 +108,11 @@ def random_gradients(count=60):
     return F
 
 
+def as_plane(F):
+    """Deformation gradients whose third row and column are the identity's."""
+    return np.eye(3) + PLANE * (F - np.eye(3))
+
+
 @pytest.mark.parametrize("model", MODELS)
 def test_stress_is_derivative_of_energy(model):
     """The stress is the finite difference of the energy density, inverted and flat states included."""
@@ -95,20 +123,24 @@ def test_stress_is_derivative_of_energy(model):
     np.testing.assert_allclose(evaluate(model, F)[1].reshape(-1, 9), expected, rtol=1e-6, atol=1e-6)
 
 
+@solid_and_plane
 @pytest.mark.parametrize("model", MODELS)
-def test_projected_hessian_is_nearest_positive_semidefinite(model):
-    """The projected Hessian is the true one with its negative eigenvalues set to zero; equal where there are none."""
-    F = random_gradients()
-    true, projected = true_hessians(model, F), evaluate(model, F)[2]
+def test_projected_hessian_is_nearest_positive_semidefinite(model, plane):
+    """The projected Hessian is the kept one, or its part in the plane, with negative eigenvalues set to zero."""
+    F = as_plane(random_gradients()) if plane else random_gradients()
+    true, projected = kept_hessians(model, F), evaluate(model, F, plane)[2]
+    if plane:
+        true *= np.outer(PLANE, PLANE)
     values, vectors = np.linalg.eigh(0.5 * (true + true.transpose(0, 2, 1)))
     expected = np.einsum("nij,nj,nkj->nik", vectors, np.maximum(values, 0.0), vectors)
     scale = np.abs(true).max(axis=(1, 2), keepdims=True)
     assert np.all(np.abs(projected - expected) < 2e-5 * scale)
-    definite = values.min(axis=1) > 0.0
+    definite = values[:, 5 if plane else 0] > 1e-6
     assert 3 < definite.sum() < len(F) - 10
     assert np.all((np.abs(projected - true) < 2e-5 * scale)[definite])
 
 
+@solid_and_plane
 @pytest.mark.parametrize("model", MODELS)
 @settings(max_examples=60, deadline=None)
 @given(
@@ -118,21 +150,23 @@ def test_projected_hessian_is_nearest_positive_semidefinite(model):
 @example(F=np.zeros((3, 3)), flat=0)
 @example(F=-np.eye(3), flat=0)
 @example(F=np.full((3, 3), 1e-30), flat=0)
-def test_projected_hessian_is_positive_semidefinite(model, F, flat):
+def test_projected_hessian_is_positive_semidefinite(model, plane, F, flat):
     """The projected Hessian is finite, symmetric and has no negative eigenvalue, whatever F is."""
     F = F.copy()
     F[:, :flat] = F[:, 2:]
-    hessian = evaluate(model, F)[2][0]
+    hessian = evaluate(model, as_plane(F) if plane else F, plane)[2][0]
     scale = max(1.0, np.abs(hessian).max())
     assert np.isfinite(hessian).all()
     assert np.abs(hessian - hessian.T).max() < 1e-5 * scale
     assert np.linalg.eigvalsh(hessian.astype(np.float64)).min() > -1e-5 * scale
 
 
+@solid_and_plane
 @pytest.mark.parametrize("model", MODELS)
-def test_vertex_block_belongs_to_hessian(model):
+def test_vertex_block_belongs_to_hessian(model, plane):
     """The 3x3 block of a vertex is the Hessian between its three directions."""
-    *_, hessians, blocks = evaluate(model, random_gradients())
+    F = as_plane(random_gradients()) if plane else random_gradients()
+    *_, hessians, blocks = evaluate(model, F, plane)
     full = hessians.reshape(-1, 3, 3, 3, 3)
     expected = np.einsum("naibj,i,j->nab", full, GRADIENT, GRADIENT)
     scale = np.abs(expected).max(axis=(1, 2), keepdims=True) + 1e-6

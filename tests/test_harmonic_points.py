@@ -78,7 +78,7 @@ def test_no_points():
         ("epsilon", 0.0, "between 1e-6 and 0.1"),
         ("epsilon", float("nan"), "between 1e-6 and 0.1"),
         ("correction", "best", "harmonic, affine, none"),
-        ("bounds", "box", "dop18"),
+        ("bounds", "box", "dop18, dop26, aabb, sphere"),
         ("distance", "near", "grid, all"),
         ("quads", "bilinear", "mean_value, harmonic"),
     ],

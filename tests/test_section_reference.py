@@ -10,50 +10,59 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cage_shapes import SHAPES, hexagonal_prism
-from cut_sequences import CAGES
-from newton_cagecut.cage import Blade, BladePlane, Cage, Cut
+from cage_shapes import SHAPES, hexagonal_prism, random_blade
+from cut_sequences import CAGES, EVERY
+from newton_cagecut.cage import Blade, Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from plane_shapes import loops_of
 
 RANDOM = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 _SCALES = [(1e-3, 0.0), (1.0, 0.0), (1e3, 0.0), (1.0, 1e4)]
 
 
 def _solid(cage: Cage) -> manifold3d.Manifold:
-    """The cage as the other library's solid, of which the vertices are in float64."""
-    mesh = manifold3d.Mesh64(cage.vertices.copy(), cage.triangles.astype(np.uint64))
-    solid = manifold3d.Manifold(mesh)
+    """The cage as the other library's solid, in float64; a plane cage as a prism of height one over it."""
+    vertices, triangles = (cage.vertices.copy(), cage.triangles) if cage.dimension == 3 else _prism(cage)
+    solid = manifold3d.Manifold(manifold3d.Mesh64(vertices, triangles.astype(np.uint64)))
     assert solid.status() == manifold3d.Error.NoError
     return solid
 
 
-def _cap_area(half: manifold3d.Manifold, plane: BladePlane, tolerance: float) -> float:
-    """Area of a half's triangles in the plane."""
+def _prism(cage: Cage) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and triangles of a prism over a plane cage, triangulated by the other library."""
+    loops, count = loops_of(cage), cage.vertex_count
+    cap = np.concatenate(loops)[manifold3d.triangulate([cage.vertices[loop] for loop in loops])]
+    a, b = cage.simplices.T
+    sides = [np.stack([a, b, b + count], axis=1), np.stack([a, b + count, a + count], axis=1)]
+    height = np.repeat([0.0, 1.0], count)
+    return np.c_[np.tile(cage.vertices, (2, 1)), height], np.concatenate([cap[:, ::-1], cap + count, *sides])
+
+
+def _cap_area(half: manifold3d.Manifold, origin: np.ndarray, normal: np.ndarray, tolerance: float) -> float:
+    """Area of a half's triangles in a plane."""
     mesh = half.to_mesh64()
     corner = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts)]
-    on_plane = (np.abs(plane.distance(corner.reshape(-1, 3))) < tolerance).reshape(-1, 3).all(axis=1)
+    on_plane = (np.abs((corner - origin) @ normal) < tolerance).all(axis=1)
     cross = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])[on_plane]
     return 0.5 * float(np.linalg.norm(cross, axis=1).sum())
 
 
-@pytest.mark.parametrize("name", CAGES)
+@pytest.mark.parametrize("name", EVERY)
 @settings(max_examples=5, **RANDOM)
 @given(st.integers(0, 2**32 - 1))
 def test_complete_cuts_against_manifold(name, seed):
-    """The area of the section and the volumes of the pieces are those of an independent library, to 1e-9."""
-    rng = np.random.default_rng(seed)
-    cage = CAGES[name]()
-    low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
-    cut = Cut(cage, Blade(low + (high - low) * rng.uniform(0.2, 0.8, 3), rng.normal(size=3), rng.normal(size=3)))
+    """The measure of the section and the volumes of the pieces are those of an independent library, to 1e-9."""
+    cage = EVERY[name]()
+    cut = Cut(cage, random_blade(np.random.default_rng(seed), cage))
     edit = cut.advance(to=np.inf)
-    plane, solid = cut.plane, _solid(cage)
-    halves = solid.split_by_plane(plane.normal, plane.origin @ plane.normal)
+    origin, normal = (np.append(vector, 0.0)[:3] for vector in (cut.plane.origin, cut.plane.normal))
+    halves = _solid(cage).split_by_plane(normal, origin @ normal)
     volumes = sorted(part.volume() for half in halves for part in half.decompose())
-    np.testing.assert_allclose(sorted(edit.cage.component_volumes), volumes, rtol=1e-9, atol=1e-9 * cage.volume)
+    np.testing.assert_allclose(sorted(edit.cage.piece_volumes), volumes, rtol=1e-9, atol=1e-9 * cage.volume)
     area = np.linalg.norm(edit.cage.mesh.face_area_vector, axis=1)
     for side, half in ((1, halves[0]), (0, halves[1])):
         mine = area[edit.cage.face_key == 2 * cut.wall + side].sum()
-        reference = _cap_area(half, plane, 1e-3 * cage.length_tolerance)
+        reference = _cap_area(half, origin, normal, 1e-3 * cage.length_tolerance)
         assert mine == pytest.approx(reference, rel=1e-9, abs=1e-9 * cage.diameter**2)
 
 

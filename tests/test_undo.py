@@ -13,6 +13,7 @@ from cage_shapes import SHAPES, box
 from newton_cagecut.cage import Blade, Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
 from newton_cagecut.surface import SurfaceCut
+from plane_shapes import PLANES
 from surface_shapes import bumpy_sphere, sphere
 
 BLADE = Blade([0.52, 0.5, 0.5], [0.1, 1.0, 0.05], [0.1, 0.0, -1.0])
@@ -39,11 +40,11 @@ def _coordinates(**options) -> HarmonicCoordinates:
     return HarmonicCoordinates(box(), points, walks=64, seed=5, gradients=True, device="cpu", **options)
 
 
-@pytest.mark.parametrize("name", ["box", "star_prism", "square_torus"])
+@pytest.mark.parametrize("name", ["box", "star_prism", "square_torus", *PLANES])
 def test_rewound_cut_is_what_it_was(name):
     """A cut rewound to a depth, or to a snapshot, equals the cut on its way there, and goes on as it did."""
-    base = SHAPES[name]()
-    cut = Cut(base, BLADE)
+    base = (SHAPES | PLANES)[name]()
+    cut = Cut(base, BLADE if base.dimension == 3 else Blade([0.52, 0.5], [0.1, -1.0]))
     known, snapshots = {}, {}
     for part in (0.0, 0.2, 0.5, 0.9, 1.2):
         known[part] = cut.advance(to=part * cut.length).cage

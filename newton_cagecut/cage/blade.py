@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Blades, and the planes that they sweep.
 
-Section 5.2 of the paper defines a cut in 3D by a line and a cutting direction.
+Section 5.2 of the paper defines a cut in 3D by a line and a cutting direction; in the plane (section 4) the blade is a
+point. There the line is what the point sweeps, its edge sticks out of the plane, and every vector has two numbers.
 """
 
 from __future__ import annotations
@@ -17,42 +18,43 @@ _LEAST_SINE = 1e-3
 
 
 class Blade:
-    """A straight edge that moves in one direction, in the rest frame."""
+    """A straight edge, or in the plane a point, that moves in one direction, in the rest frame."""
 
     def __init__(
         self,
         origin: np.ndarray,
-        edge: np.ndarray,
-        direction: np.ndarray,
+        edge: np.ndarray | None = None,
+        direction: np.ndarray | None = None,
         *,
         width: float | tuple[float, float] | None = None,
         start: float | None = None,
     ):
-        """Define a blade.
+        """Define a blade: ``Blade(origin, edge, direction)``, or ``Blade(origin, direction)`` in the plane.
 
         Args:
-            origin: A point of the plane that the blade sweeps, shape (3,) [m].
-            edge: Direction of the blade's line, of any length, shape (3,).
-            direction: Direction in which the blade moves, of any length, not along the edge, shape (3,).
+            origin: A point of the plane, or of the line, that the blade sweeps, shape (3,) or (2,) [m].
+            edge: Direction of the blade's line, of any length, shape (3,); in the plane there is none.
+            direction: Direction in which the blade moves, of any length, not along the edge, shape (3,) or (2,).
             width: Where the knife ends along its edge, from the origin: (heel, tip), or one length for both ways
-                together with the origin in the middle; None for a knife without ends [m].
+                together with the origin in the middle; None for a knife without ends, as always in the plane [m].
             start: Where the knife starts along its direction, from the origin; what lies behind is not cut. None for
-                outside of the body [m].
+                outside of the body; in the plane it must lie outside, between parts of the body [m].
 
         Raises:
-            TypeError: If something is not three numbers.
-            ValueError: If something is not finite, a direction is zero or both are parallel.
+            TypeError: If something is not as many numbers as the space has dimensions, or missing.
+            ValueError: If something is not finite, a direction is zero or both are parallel, or the blade has an edge
+                or a width in the plane.
         """
-        self.origin = _as_vector(origin, "origin")
-        self.edge = _as_unit(edge, "edge")
-        self.direction = _as_unit(direction, "direction")
-        normal = np.cross(self.edge, self.direction)
-        sine = float(np.linalg.norm(normal))
-        if sine < _LEAST_SINE:
-            raise ValueError(
-                f"the blade's edge and direction are parallel (sine of their angle {sine:.3g}): they span no plane"
-            )
-        self.normal = normal / sine
+        self.origin = _as_origin(origin)
+        if self.dimension == 2:
+            direction = _only_direction(edge, direction, width)
+            self.edge = np.zeros(2)
+        else:
+            if edge is None or direction is None:
+                raise TypeError("a blade in space needs an edge and a direction: Blade(origin, edge, direction)")
+            self.edge = _as_unit(edge, "edge", 3)
+        self.direction = _as_unit(direction, "direction", self.dimension)
+        self.normal = _normal(self.edge, self.direction)
         self.heel, self.tip = _as_width(width)
         self.start = -np.inf if start is None else float(start)
         if np.isnan(self.start) or self.start == np.inf:
@@ -61,27 +63,36 @@ class Blade:
             vector.setflags(write=False)
 
     @property
+    def dimension(self) -> int:
+        """Dimension of the space."""
+        return len(self.origin)
+
+    @property
     def window(self) -> tuple[float, float, float] | None:
         """Heel, tip and start, None where the blade has none of them [m]."""
         window = (self.heel, self.tip, self.start)
         return window if np.isfinite(window).any() else None
 
     def __repr__(self) -> str:
-        return f"Blade(origin={self.origin.tolist()}, edge={self.edge.tolist()}, direction={self.direction.tolist()})"
+        edge = f"edge={self.edge.tolist()}, " if self.dimension == 3 else ""
+        return f"Blade(origin={self.origin.tolist()}, {edge}direction={self.direction.tolist()})"
 
 
 @dataclass(frozen=True, eq=False)
 class BladePlane:
-    """The plane that a blade sweeps, with a coordinate along its edge and one along its direction."""
+    """The plane that a blade sweeps, with a coordinate along its edge and one along its direction.
+
+    In 2D it is the line that the blade sweeps; the coordinate along the edge, which sticks out of it, is zero.
+    """
 
     origin: np.ndarray
-    """A point of the plane, shape (3,) [m]."""
+    """A point of the plane, shape (dimension,) [m]."""
     edge: np.ndarray
-    """Unit direction of the blade's line, shape (3,)."""
+    """Unit direction of the blade's line, shape (3,); in 2D what the plane sees of it, zero, shape (2,)."""
     direction: np.ndarray
-    """Unit direction of the sweep, shape (3,)."""
+    """Unit direction of the sweep, shape (dimension,)."""
     normal: np.ndarray
-    """Unit normal, along ``edge x direction``, shape (3,)."""
+    """Unit normal, along ``edge x direction``, which in 2D is left of the direction, shape (dimension,)."""
 
     @classmethod
     def of(cls, blade: Blade) -> BladePlane:
@@ -91,6 +102,16 @@ class BladePlane:
             blade: The blade.
         """
         return cls(blade.origin, blade.edge, blade.direction, blade.normal)
+
+    @property
+    def dimension(self) -> int:
+        """Dimension of the space."""
+        return len(self.origin)
+
+    @property
+    def across(self) -> np.ndarray:
+        """Unit direction of the plane across its edge, ahead, shape (dimension,)."""
+        return self.direction if self.dimension == 2 else np.cross(self.normal, self.edge)
 
     def shifted(self, offset: float) -> BladePlane:
         """The plane moved along its normal.
@@ -108,11 +129,24 @@ class BladePlane:
         """
         return BladePlane(self.origin + front * self.direction, self.edge, self.direction, self.normal)
 
+    def towards(self, direction: np.ndarray) -> BladePlane:
+        """The plane in which the blade moves in another direction.
+
+        Args:
+            direction: The direction, of any length, not along the edge, shape (dimension,).
+
+        Raises:
+            TypeError: If the direction is not as many numbers as the space has dimensions.
+            ValueError: If the direction is not finite, zero or along the edge.
+        """
+        edge = (self.edge,) if self.dimension == 3 else ()
+        return BladePlane.of(Blade(self.origin, *edge, direction))
+
     def distance(self, points: np.ndarray) -> np.ndarray:
         """Signed distance, the same to the last bit for the same point, shape (point_count,) [m].
 
         Args:
-            points: Points, shape (point_count, 3) [m].
+            points: Points, shape (point_count, dimension) [m].
         """
         return _dot(points - self.origin, self.normal)
 
@@ -120,7 +154,7 @@ class BladePlane:
         """Coordinates (a, s) along the edge and the direction, shape (point_count, 2) [m].
 
         Args:
-            points: Points of the plane, shape (point_count, 3) [m].
+            points: Points of the plane, shape (point_count, dimension) [m].
         """
         offset = points - self.origin
         along_edge, along_direction = _dot(offset, self.edge), _dot(offset, self.direction)
@@ -132,7 +166,8 @@ class BladePlane:
 
     def wall(self) -> Wall:
         """The wall that a cut along this plane leaves."""
-        return Wall(self.origin, np.stack([self.edge, np.cross(self.normal, self.edge)]), self.normal, two_sided=True)
+        axes = self.direction[None] if self.dimension == 2 else np.stack([self.edge, self.across])
+        return Wall(self.origin, axes, self.normal, two_sided=True)
 
 
 def clear_plane(plane: BladePlane, points: np.ndarray, tolerance: float) -> BladePlane:
@@ -140,7 +175,7 @@ def clear_plane(plane: BladePlane, points: np.ndarray, tolerance: float) -> Blad
 
     Args:
         plane: The plane.
-        points: Points to keep off, shape (point_count, 3) [m].
+        points: Points to keep off, shape (point_count, dimension) [m].
         tolerance: Distance to keep [m].
     """
     distance = plane.distance(points)
@@ -156,10 +191,10 @@ def clear_turn(plane: BladePlane, points: np.ndarray, tolerance: float) -> Blade
 
     Args:
         plane: The plane.
-        points: Points to keep off, shape (point_count, 3) [m].
+        points: Points to keep off, shape (point_count, dimension) [m].
         tolerance: Distance to keep [m].
     """
-    across = np.cross(plane.normal, plane.edge)
+    across = plane.across
     height, ahead = plane.distance(points), _dot(points - plane.origin, across)
     close = (ahead > 8.0 * tolerance) & (np.abs(height) < 0.25 * ahead)
     height, ahead = height[close], ahead[close]
@@ -184,7 +219,34 @@ def _nearest_gap(position: np.ndarray, margin: np.ndarray) -> float:
 
 def _dot(vectors: np.ndarray, axis: np.ndarray) -> np.ndarray:
     """Dot products by element-wise arithmetic, which does not depend on a vector's place in the array."""
-    return vectors[:, 0] * axis[0] + vectors[:, 1] * axis[1] + vectors[:, 2] * axis[2]
+    total = vectors[:, 0] * axis[0] + vectors[:, 1] * axis[1]
+    return total if len(axis) == 2 else total + vectors[:, 2] * axis[2]
+
+
+def _normal(edge: np.ndarray, direction: np.ndarray) -> np.ndarray:
+    """Unit normal along ``edge x direction``, the edge of a plane's blade pointing out of it."""
+    if len(direction) == 2:
+        return np.array([-direction[1], direction[0]])
+    normal = np.cross(edge, direction)
+    sine = float(np.linalg.norm(normal))
+    if sine < _LEAST_SINE:
+        raise ValueError(
+            f"the blade's edge and direction are parallel (sine of their angle {sine:.3g}): they span no plane"
+        )
+    return normal / sine
+
+
+def _only_direction(edge: np.ndarray | None, direction: np.ndarray | None, width: object) -> np.ndarray:
+    """The direction of a blade in the plane, which comes in the place of the edge or by its name."""
+    if width is not None:
+        raise ValueError(f"a blade in the plane is a point, which has no width, got {width!r}")
+    if direction is None:
+        direction = edge
+    elif edge is not None:
+        raise ValueError("a blade in the plane has no edge; give Blade(origin, direction)")
+    if direction is None:
+        raise TypeError("a blade in the plane needs a direction: Blade(origin, direction)")
+    return direction
 
 
 def _as_width(width: float | tuple[float, float] | None) -> tuple[float, float]:
@@ -199,20 +261,27 @@ def _as_width(width: float | tuple[float, float] | None) -> tuple[float, float]:
     return heel, tip
 
 
-def _as_vector(value: np.ndarray, name: str) -> np.ndarray:
+def _as_origin(value: np.ndarray) -> np.ndarray:
+    vector = _as_numbers(value, "origin", "three numbers, or two in the plane")
+    if vector.shape not in ((3,), (2,)):
+        raise ValueError(f"the blade's origin must have shape (3,), or (2,) in the plane, got {vector.shape}")
+    return vector
+
+
+def _as_numbers(value: np.ndarray, name: str, what: str) -> np.ndarray:
     try:
         vector = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
-        raise TypeError(f"the blade's {name} must be three numbers, got {value!r}") from None
-    if vector.shape != (3,):
-        raise ValueError(f"the blade's {name} must have shape (3,), got {vector.shape}")
+        raise TypeError(f"the blade's {name} must be {what}, got {value!r}") from None
     if not np.isfinite(vector).all():
         raise ValueError(f"the blade's {name} is not finite: {vector.tolist()}")
     return vector
 
 
-def _as_unit(value: np.ndarray, name: str) -> np.ndarray:
-    vector = _as_vector(value, name)
+def _as_unit(value: np.ndarray, name: str, dimension: int) -> np.ndarray:
+    vector = _as_numbers(value, name, "three numbers" if dimension == 3 else "two numbers")
+    if vector.shape != (dimension,):
+        raise ValueError(f"the blade's {name} must have shape ({dimension},), as its origin has, got {vector.shape}")
     largest = float(np.abs(vector).max())
     if largest == 0.0:
         raise ValueError(f"the blade's {name} is zero; give it a direction")

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""Cages: closed polygon meshes around the volume that is cut.
+"""Cages: closed polygon meshes around the volume, or loops of segments around the area, that is cut.
 
 Section 3 of the paper calls this the cage; section 5.1 lets its faces be n-gons, planar in the rest state. Positions
-are in the rest frame.
+are in the rest frame. In 2D a volume is an area.
 """
 
 from __future__ import annotations
@@ -13,8 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
-from . import intersection, validation
+from . import extension, intersection, segment_checks, validation
+from .edit import CageEdit
 from .face_triangles import triangulate_faces
+from .obstacle import insert_obstacle
 from .pieces import component_piece
 from .polygon_mesh import PolygonMesh
 from .wall import Wall, face_walls
@@ -22,18 +24,19 @@ from .winding import winding_numbers
 
 
 class Cage:
-    """A closed, consistently oriented manifold of planar polygons; immutable."""
+    """A closed, consistently oriented manifold of planar polygons, or of segments in the plane; immutable."""
 
     def __init__(self, vertices: np.ndarray, faces: Sequence[Sequence[int]], *, tolerance: float = 1e-6):
         """Validate and build a cage.
 
         Args:
-            vertices: Rest positions, shape (vertex_count, 3) [m].
-            faces: Loops of vertex ids, counterclockwise seen from outside.
+            vertices: Rest positions, shape (vertex_count, 3), or (vertex_count, 2) in the plane [m].
+            faces: Loops of vertex ids, counterclockwise seen from outside. In the plane segments (a, b) with the inside
+                to their left: outer loops counterclockwise, those around holes clockwise.
             tolerance: Length below which things coincide, relative to the diagonal of the bounding box.
 
         Raises:
-            TypeError: If the vertices are not numbers or the faces not loops of integers.
+            TypeError: If the vertices are not numbers or the faces not sequences of integers.
             ValueError: If the cage is not what the class promises; the text names the culprit.
         """
         positions = _as_vertices(vertices)
@@ -44,7 +47,7 @@ class Cage:
         self.tolerance = float(tolerance)
         self.diameter = float(np.linalg.norm(positions.max(axis=0) - positions.min(axis=0)))
         self.mesh = PolygonMesh(positions, face_start, face_vertex)
-        self._check_surface()
+        self._check_boundary()
         normals = self.mesh.face_area_vector / np.linalg.norm(self.mesh.face_area_vector, axis=1, keepdims=True)
         validation.check_planarity(self.mesh, normals, self.length_tolerance)
         self.walls: tuple[Wall, ...] = face_walls(positions, face_start, face_vertex, normals)
@@ -57,7 +60,7 @@ class Cage:
     def _assembled(
         cls, base: Cage, mesh: PolygonMesh, walls: tuple[Wall, ...], face_wall: np.ndarray, face_side: np.ndarray
     ) -> Cage:
-        """A cage that a cut made of ``base``, taken as it is."""
+        """A cage that an edit made of ``base``, taken as it is."""
         cage = cls.__new__(cls)
         cage.tolerance = base.tolerance
         cage.diameter = base.diameter
@@ -79,17 +82,20 @@ class Cage:
 
     @property
     def dimension(self) -> int:
-        """Dimension of the space."""
-        return self.vertices.shape[1]
+        """Dimension of the space, 2 or 3."""
+        return self.mesh.dimension
 
     @property
     def vertices(self) -> np.ndarray:
-        """Rest positions, shape (vertex_count, 3) [m]."""
+        """Rest positions, shape (vertex_count, dimension) [m]."""
         return self.mesh.vertices
 
     @cached_property
     def faces(self) -> tuple[tuple[int, ...], ...]:
-        """Loops of vertex ids, counterclockwise seen from outside; a slit's loop walks to its tip and back."""
+        """Loops of vertex ids, counterclockwise seen from outside; a slit's loop walks to its tip and back.
+
+        In 2D pairs of vertex ids, with the inside to the left.
+        """
         return self.mesh.loops()
 
     @property
@@ -147,7 +153,7 @@ class Cage:
 
     @property
     def piece_volumes(self) -> np.ndarray:
-        """Volume of each solid piece, cavities taken off, shape (piece_count,) [m^3]."""
+        """Volume, in 2D area, of each solid piece, cavities taken off, shape (piece_count,) [m^d]."""
         return np.bincount(self.component_piece, weights=self.component_volumes)
 
     @property
@@ -157,20 +163,22 @@ class Cage:
 
     @property
     def component_volumes(self) -> np.ndarray:
-        """Enclosed volume of each component, negative for a cavity, nothing for a cut wholly inside.
+        """Enclosed volume, in 2D area, of each component, negative for a cavity, nothing for a cut wholly inside.
 
-        Shape (component_count,) [m^3].
+        Shape (component_count,) [m^d].
         """
         return self.mesh.component_volumes
 
     @property
     def volume(self) -> float:
-        """Enclosed volume [m^3]."""
+        """Enclosed volume, in 2D area [m^d]."""
         return float(self.mesh.face_volume.sum())
 
     @property
     def euler_characteristic(self) -> int:
-        """Vertices minus edges plus faces."""
+        """Vertices minus edges plus faces, in 2D vertices minus segments."""
+        if self.dimension == 2:
+            return self.vertex_count - self.face_count
         return self.vertex_count - self.mesh.edge_count + self.face_count
 
     @cached_property
@@ -188,6 +196,8 @@ class Cage:
 
     @cached_property
     def _triangulation(self) -> tuple[np.ndarray, np.ndarray]:
+        if self.dimension == 2:
+            raise ValueError("the faces of a plane cage are segments, not triangles; use simplices and simplex_face")
         return triangulate_faces(self.mesh, self.corner_coordinates)
 
     @property
@@ -197,13 +207,13 @@ class Cage:
 
     @property
     def simplices(self) -> np.ndarray:
-        """What the boundary is made of: the triangles of the faces, shape (simplex_count, dimension)."""
-        return self.triangles
+        """What the boundary is made of, triangles of the faces or segments, shape (simplex_count, dimension)."""
+        return self.mesh.face_vertex.reshape(-1, 2) if self.dimension == 2 else self.triangles
 
     @property
     def simplex_face(self) -> np.ndarray:
         """Face of each simplex, sorted, shape (simplex_count,)."""
-        return self.triangle_face
+        return np.arange(self.face_count) if self.dimension == 2 else self.triangle_face
 
     @property
     def triangle_face(self) -> np.ndarray:
@@ -214,10 +224,11 @@ class Cage:
         """Check the cage again, slits and coincident sides of cuts being allowed.
 
         Raises:
-            ValueError: If the cage is not a closed, oriented manifold of planar polygons around a positive volume.
+            ValueError: If the cage is not a closed, oriented manifold of planar polygons, in 2D of segments, around a
+                positive volume.
         """
         validation.check_loops(self.vertices, self.mesh.face_start, self.mesh.face_vertex, simple=False)
-        validation.check_topology(self.mesh)
+        self._check_topology()
         normals = np.array([wall.normal for wall in self.walls])[self.face_wall]
         validation.check_planarity(self.mesh, normals, self.length_tolerance)
         validation.check_volume(self.mesh)
@@ -226,20 +237,20 @@ class Cage:
         """Winding number of each point about each component.
 
         Args:
-            points: Points, shape (point_count, 3) [m].
+            points: Points, shape (point_count, dimension) [m].
 
         Returns:
             Winding numbers, shape (point_count, component_count).
         """
-        points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
-        group = self.face_component[self.triangle_face]
-        return winding_numbers(points, self.vertices, self.triangles, group, self.component_count)
+        points = np.asarray(points, dtype=np.float64).reshape(-1, self.dimension)
+        group = self.face_component[self.simplex_face]
+        return winding_numbers(points, self.vertices, self.simplices, group, self.component_count)
 
     def contains(self, points: np.ndarray) -> np.ndarray:
         """Whether points lie inside the cage.
 
         Args:
-            points: Points, shape (point_count, 3) [m].
+            points: Points, shape (point_count, dimension) [m].
 
         Returns:
             True for the points inside, shape (point_count,).
@@ -250,7 +261,7 @@ class Cage:
         """Solid piece in which points lie.
 
         Args:
-            points: Points, shape (point_count, 3) [m].
+            points: Points, shape (point_count, dimension) [m].
 
         Returns:
             Piece of each point, -1 outside the cage, shape (point_count,).
@@ -259,16 +270,72 @@ class Cage:
         volume = np.where((number > 0.5) & self.mesh.component_outward, self.component_volumes, np.inf)
         return np.where(number.sum(axis=1) > 0.5, self.component_piece[volume.argmin(axis=1)], -1)
 
-    def _check_surface(self) -> None:
+    def extrude(self, face: int, distance: float) -> CageEdit:
+        """Move a face outward along its normal and close the gap around it with new faces; the cage stays as it is.
+
+        Args:
+            face: A face that no cut has slit or split.
+            distance: How far it moves [m].
+
+        Returns:
+            The step to the extended cage.
+
+        Raises:
+            TypeError: If the face is not an integer or the distance not a number.
+            ValueError: If the face cannot be extruded or something is in its way; the text names the culprit.
+        """
+        return extension.extrude(self, face, distance)
+
+    def move_face(self, face: int, distance: float) -> CageEdit:
+        """Move a face outward along its normal, its neighbours growing with it; the cage stays as it is.
+
+        Args:
+            face: A face that no cut has slit or split, at right angles to all its neighbours.
+            distance: How far it moves [m].
+
+        Returns:
+            The step to the extended cage.
+
+        Raises:
+            TypeError: If the face is not an integer or the distance not a number.
+            ValueError: If a neighbour would not stay planar, or something is in its way; the text names the culprit.
+        """
+        return extension.move_face(self, face, distance)
+
+    def insert(self, obstacle: Cage) -> CageEdit:
+        """Take the room of an obstacle from the body; the cage stays as it is.
+
+        Args:
+            obstacle: A cage without cuts, strictly inside the body.
+
+        Returns:
+            The step to the cage with a cavity.
+
+        Raises:
+            TypeError: If the obstacle is not a cage.
+            ValueError: If the obstacle is not strictly inside the body; the text names the culprit.
+        """
+        return insert_obstacle(self, obstacle)
+
+    def _check_topology(self) -> None:
+        if self.dimension == 2:
+            segment_checks.check_closed(self.mesh)
+        else:
+            validation.check_topology(self.mesh)
+
+    def _check_boundary(self) -> None:
         if self.diameter == 0.0:
             raise ValueError("all vertices of the cage coincide")
-        validation.check_topology(self.mesh)
+        self._check_topology()
         validation.check_areas(self.mesh, self.length_tolerance)
+        if self.dimension == 2:
+            segment_checks.check_crossings(self.mesh, self.length_tolerance)
         validation.check_volume(self.mesh)
 
     def _check_crossings(self) -> None:
-        intersection.check_simple_faces(self.mesh, self.corner_coordinates, self.length_tolerance)
-        intersection.check_face_pairs(self.mesh, self.triangles, self.triangle_face, self.length_tolerance)
+        if self.dimension == 3:
+            intersection.check_simple_faces(self.mesh, self.corner_coordinates, self.length_tolerance)
+            intersection.check_face_pairs(self.mesh, self.triangles, self.triangle_face, self.length_tolerance)
         intersection.check_nesting(self.vertices, self.vertex_component, self.component_volumes, self.winding_numbers)
 
 
@@ -276,9 +343,9 @@ def _as_vertices(vertices: np.ndarray) -> np.ndarray:
     try:
         positions = np.array(vertices, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise TypeError(f"vertices must be numbers of shape (vertex_count, 3): {error}") from None
-    if positions.ndim != 2 or positions.shape[1] != 3:
-        raise ValueError(f"vertices must have shape (vertex_count, 3), got {positions.shape}")
+        raise TypeError(f"vertices must be numbers of shape (vertex_count, 3) or (vertex_count, 2): {error}") from None
+    if positions.ndim != 2 or positions.shape[1] not in (2, 3):
+        raise ValueError(f"vertices must have shape (vertex_count, 3), or (vertex_count, 2), got {positions.shape}")
     return positions
 
 

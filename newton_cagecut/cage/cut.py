@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Progressive cuts of cages.
 
-Section 5.2 of the paper. A cut is a pure function: (cage before the cut, blade, depth) -> cage, with the turns of the
-blade, each at its depth, as a part of the blade.
+Sections 4 and 5.2 of the paper. A cut is a pure function: (cage before the cut, blade, depth) -> cage, with the turns
+of the blade, each at its depth, as a part of the blade.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .arguments import as_number
 from .blade import Blade, BladePlane, clear_plane, clear_turn
 from .cage import Cage
 from .edit import CageEdit
@@ -49,11 +50,17 @@ class Cut:
 
         Raises:
             TypeError: If the arguments are not a cage and a blade.
+            ValueError: If the blade is not of the cage's dimension, or starts inside the body where it may not.
         """
         if not isinstance(cage, Cage):
             raise TypeError(f"cage must be a Cage, got {type(cage).__name__}")
         if not isinstance(blade, Blade):
             raise TypeError(f"blade must be a Blade, got {type(blade).__name__}")
+        if blade.dimension != cage.dimension:
+            raise ValueError(
+                f"the cage is of dimension {cage.dimension} and the blade of dimension {blade.dimension}; give a blade "
+                f"whose vectors have {cage.dimension} numbers"
+            )
         self.base = cage
         """The cage before the cut."""
         self.depth = 0.0
@@ -94,7 +101,7 @@ class Cut:
     @property
     def window(self) -> tuple[float, float, float] | None:
         """Heel, tip and start of a knife where they are in the plane, moved off the section's nodes; else None [m]."""
-        return self._strip.window
+        return self.section.window
 
     @property
     def section(self) -> Section:
@@ -129,7 +136,7 @@ class Cut:
             TypeError: If the depth is not a number.
             ValueError: If the depth is not a number's value, or less than the depth now.
         """
-        depth = _as_depth(to)
+        depth = as_number(to, "the depth of a cut")
         if depth < self.depth:
             raise ValueError(f"a cut never goes back: it has reached depth {self.depth:g}, asked for {depth:g}")
         self._state, edit = self._strip.advance(self._state, depth - self._strips[-1][1], depth)
@@ -137,34 +144,36 @@ class Cut:
         return edit
 
     def turn(self, direction: np.ndarray) -> None:
-        """Turn the blade about its present front line; further steps open a further wall from there.
+        """Turn the blade about its present front; further steps open a further wall from there.
 
         Args:
-            direction: Direction in which the blade moves from now on, of any length, not along the edge, shape (3,).
+            direction: Direction in which the blade moves from now on, of any length, not along the edge, shape
+                (dimension,).
 
         Raises:
-            TypeError: If the direction is not three numbers.
+            TypeError: If the direction is not as many numbers as the space has dimensions.
             ValueError: If the direction is not finite, zero, along the edge or back into the cut, or the cut is
                 complete. Nothing has changed then.
         """
         if self.complete:
             raise ValueError("the cut is complete: there is no front to turn about; begin a new cut")
         plane = self._front_plane()
-        blade = Blade(plane.origin, plane.edge, direction)
-        if np.dot(_across(blade.direction, plane.edge), _across(plane.direction, plane.edge)) < _LEAST_TURN_COSINE:
+        turned = plane.towards(direction)
+        if np.dot(turned.across, plane.across) < _LEAST_TURN_COSINE:
             raise ValueError("the blade would turn back into its own cut; turn it by less than 170 degrees")
-        self._go_on(self.cage, BladePlane.of(blade))
+        self._go_on(self.cage, turned)
 
     def resume(self, cage: Cage) -> None:
-        """Go on in a cage that other cuts have changed since the last step.
+        """Go on in a cage that other cuts, extensions or obstacles have changed since the last step.
 
         Further steps open a further wall, in the same plane as far as the tolerance allows.
 
         Args:
-            cage: The cage as it is now, made by other cuts from this cut's.
+            cage: The cage as it is now, made by other edits from this cut's.
 
         Raises:
-            ValueError: If the cage is not one that came of this cut's. Nothing has changed then.
+            ValueError: If the cage is not one that came of this cut's, or it has grown across the cut's front line,
+                beside where the cut has come. Nothing has changed then.
         """
         if cage.walls[: len(self.cage.walls)] != self.cage.walls:
             raise ValueError("the cage did not come of this cut's: it lacks some of its walls; begin a new cut")
@@ -187,7 +196,7 @@ class Cut:
 
     def _go_on(self, cage: Cage, plane: BladePlane) -> None:
         """Begin a strip at the present front, in place of one that was begun here and not opened."""
-        if self._blade.window is not None:
+        if self._blade.window is not None and self.base.dimension == 3:
             raise ValueError(
                 "a knife of finite width, or one that starts inside, neither turns nor goes on after another cut; "
                 "begin a new cut"
@@ -226,7 +235,7 @@ class Cut:
                 raise ValueError("the snapshot is of another cut; rewind that one, or take a snapshot of this one")
             self._strips, self.depth, self._state = to.strips, to.depth, to.state
             return self.cage
-        depth = _as_depth(to)
+        depth = as_number(to, "the depth of a cut")
         if not 0.0 <= depth <= self.depth:
             raise ValueError(f"a cut is rewound to a depth between 0 and {self.depth:g}, where it is, not to {depth:g}")
         kept = [item for item in self._strips if item[1] <= depth]
@@ -251,19 +260,3 @@ def _find_hinge(cage: Cage, wall: int | None, plane: BladePlane) -> Hinge:
         used[mesh.face_vertex[key == 2 * wall + side]] = True
         on_front &= used
     return Hinge.of(mesh, cage.face_key, wall, on_front)
-
-
-def _across(direction: np.ndarray, edge: np.ndarray) -> np.ndarray:
-    """The part of a direction across an edge, of unit length."""
-    across = direction - (direction @ edge) * edge
-    return across / np.linalg.norm(across)
-
-
-def _as_depth(to: float) -> float:
-    try:
-        depth = float(to)
-    except (TypeError, ValueError):
-        raise TypeError(f"the depth of a cut must be a number, got {to!r}") from None
-    if np.isnan(depth):
-        raise ValueError("the depth of a cut must be a number, got nan")
-    return depth

@@ -10,12 +10,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .blade import BladePlane
-from .cage import Cage
 from .pieces import CagePiece, pieces_of
+
+if TYPE_CHECKING:
+    from .cage import Cage
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,13 +30,16 @@ class CageEdit:
     cage: Cage
     """The cage after the step."""
     swept: tuple[np.ndarray, ...]
-    """Polygons of new wall, counterclockwise about their wall's normal, each of shape (corner_count, 3) [m]."""
+    """Polygons of new wall, counterclockwise about their wall's normal, each of shape (corner_count, 3) [m].
+
+    In 2D they are segments with their wall's normal on their right, each of shape (2, 2).
+    """
     swept_wall: np.ndarray
     """Wall of each of them, ascending, shape (polygon_count,)."""
     swept_simplices: np.ndarray
-    """The same as triangles, shape (simplex_count, 3, 3) [m]."""
+    """The same as triangles, or as the segments that they are, shape (simplex_count, dimension, dimension) [m]."""
     swept_simplex_wall: np.ndarray
-    """Wall of each triangle, ascending, shape (simplex_count,)."""
+    """Wall of each simplex, ascending, shape (simplex_count,)."""
     created: np.ndarray
     """Ids of the vertices that are new, shape (created_count,)."""
     moved: np.ndarray
@@ -41,7 +47,8 @@ class CageEdit:
     source_faces: np.ndarray
     """For the created, then the moved vertices: a face of ``before`` that holds their position, shape (count,).
 
-    It is -1 for those inside the body, at the corners of the front of a knife of finite width.
+    It is -1 for those inside the body: at the corners of the front of a knife of finite width, at every tip in 2D and
+    on an obstacle; and for those outside of it, where a face has moved outward.
     """
     retired_walls: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     """Walls that bound the cage no longer, ascending, shape (retired_count,); no face of ``cage`` is on them."""
@@ -106,3 +113,27 @@ class CageEdit:
         """Keys of which some face was added, removed or changed, ascending, shape (key_count,)."""
         before = np.flatnonzero(~self._same[: self.before.face_count])
         return np.union1d(self.before.face_key[before], self.cage.face_key[self.changed_faces])
+
+
+def swept_faces(cage: Cage, faces: np.ndarray, walls: np.ndarray) -> dict[str, tuple[np.ndarray, ...] | np.ndarray]:
+    """Whole faces as the pieces of wall that an edit sweeps.
+
+    Args:
+        cage: A cage that has the faces.
+        faces: The faces, shape (count,).
+        walls: Wall that each of them adds to, shape (count,).
+
+    Returns:
+        The fields of :class:`CageEdit` that tell of what was swept.
+    """
+    mesh, order = cage.mesh, np.argsort(walls, kind="stable")
+    rows = [np.flatnonzero(cage.simplex_face == face) for face in faces[order].tolist()]
+    return {
+        "swept": tuple(
+            mesh.vertices[mesh.face_vertex[mesh.face_start[face] : mesh.face_start[face + 1]]]
+            for face in faces[order].tolist()
+        ),
+        "swept_wall": walls[order],
+        "swept_simplices": mesh.vertices[cage.simplices[np.concatenate(rows)]],
+        "swept_simplex_wall": np.repeat(walls[order], [len(row) for row in rows]),
+    }

@@ -8,11 +8,14 @@ culprits named.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from .polygon_mesh import PolygonMesh
 
 _CHUNK = 1 << 20
+_PARALLEL = 1e-14
 
 
 def check_simple_faces(mesh: PolygonMesh, corner: np.ndarray, tolerance: float) -> None:
@@ -36,7 +39,7 @@ def check_simple_faces(mesh: PolygonMesh, corner: np.ndarray, tolerance: float) 
         step = max(1, _CHUNK // len(i))
         for begin in range(0, len(faces), step):
             block = slice(begin, begin + step)
-            meet = _segments_meet(start[block, i], end[block, i], start[block, j], end[block, j], tolerance)
+            meet = segments_meet(start[block, i], end[block, i], start[block, j], end[block, j], tolerance)
             bad, pair = np.nonzero(meet)
             if len(bad):
                 face = faces[begin + bad[0]]
@@ -47,8 +50,16 @@ def check_simple_faces(mesh: PolygonMesh, corner: np.ndarray, tolerance: float) 
                 )
 
 
-def _segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, tolerance: float) -> np.ndarray:
-    """Whether closed segments a-b and c-d come within the tolerance by crossing, shape (...,)."""
+def segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, tolerance: float) -> np.ndarray:
+    """Whether closed segments a-b and c-d in the plane cross or touch within the tolerance, shape (...,).
+
+    Args:
+        a: Starts of the first segments, shape (..., 2) [m].
+        b: Ends of the first segments, shape (..., 2) [m].
+        c: Starts of the second segments, shape (..., 2) [m].
+        d: Ends of the second segments, shape (..., 2) [m].
+        tolerance: Length below which two things coincide [m].
+    """
 
     def side(p, q, r):
         u, v = q - p, r - p
@@ -75,20 +86,11 @@ def check_face_pairs(mesh: PolygonMesh, triangles: np.ndarray, triangle_face: np
     half = np.flatnonzero(np.arange(len(mesh.twin)) < mesh.twin)
     start, end = mesh.vertices[mesh.face_vertex[half]], mesh.vertices[mesh.destination[half]]
     corners = mesh.vertices[triangles]
-    edge_low, edge_high = np.minimum(start, end), np.maximum(start, end)
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    step = max(1, _CHUNK // len(triangles))
-    for begin in range(0, len(half), step):
-        block = slice(begin, begin + step)
-        near = np.ones((len(half[block]), len(triangles)), dtype=bool)
-        for axis in range(3):
-            near &= edge_low[block, axis, None] <= high[:, axis]
-            near &= edge_high[block, axis, None] >= low[:, axis]
-        row, column = np.nonzero(near)
-        through = _edge_pierces(start[begin + row], end[begin + row], corners[column], tolerance)
+    for row, column in near_pairs(np.stack([start, end], axis=1), corners, 0.0):
+        through = edge_pierces(start[row], end[row], corners[column], tolerance)
         if through.any():
             hit = int(np.argmax(through))
-            h = int(half[begin + row[hit]])
+            h = int(half[row[hit]])
             a, b = int(mesh.face_vertex[h]), int(mesh.destination[h])
             raise ValueError(
                 f"faces {mesh.face[h]} and {triangle_face[column[hit]]} of the cage intersect: edge ({a}, {b}) of the "
@@ -96,31 +98,100 @@ def check_face_pairs(mesh: PolygonMesh, triangles: np.ndarray, triangle_face: np
             )
 
 
-def _edge_pierces(p: np.ndarray, q: np.ndarray, corners: np.ndarray, tolerance: float) -> np.ndarray:
-    """Whether segments p-q pass from one side of their triangles to the other within them, shape (pair_count,)."""
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    normal = np.cross(b - a, c - a)
-    area = np.linalg.norm(normal, axis=1)
-    normal = normal / np.where(area > 0.0, area, 1.0)[:, None]
-    from_p, from_q = (np.einsum("ij,ij->i", x - a, normal) for x in (p, q))
-    opposite = (np.minimum(from_p, from_q) < -tolerance) & (np.maximum(from_p, from_q) > tolerance) & (area > 0.0)
+def near_pairs(one: np.ndarray, other: np.ndarray, tolerance: float) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Pairs of which the bounding boxes come within a tolerance of each other.
+
+    Args:
+        one: Corners of the first things, shape (one_count, corner_count, dimension) [m].
+        other: Corners of the second things, shape (other_count, corner_count, dimension) [m].
+        tolerance: Gap between boxes up to which they count as meeting [m].
+
+    Yields:
+        Indices of the first and of the second thing of each pair, block by block of the first, shapes (pair_count,).
+    """
+    one_low, one_high = one.min(axis=1) - tolerance, one.max(axis=1) + tolerance
+    low, high = other.min(axis=1), other.max(axis=1)
+    step = max(1, _CHUNK // max(1, len(other)))
+    for begin in range(0, len(one), step):
+        block = slice(begin, begin + step)
+        near = np.ones((len(one[block]), len(other)), dtype=bool)
+        for axis in range(one.shape[2]):
+            near &= one_low[block, axis, None] <= high[:, axis]
+            near &= one_high[block, axis, None] >= low[:, axis]
+        row, column = np.nonzero(near)
+        yield begin + row, column
+
+
+def edge_pierces(p: np.ndarray, q: np.ndarray, corners: np.ndarray, tolerance: float) -> np.ndarray:
+    """Whether segments p-q pass from one side of their triangles to the other within them, shape (pair_count,).
+
+    Args:
+        p: Starts of the segments, shape (pair_count, 3) [m].
+        q: Ends of the segments, shape (pair_count, 3) [m].
+        corners: Triangles, shape (pair_count, 3, 3) [m].
+        tolerance: Length below which two things coincide [m].
+    """
+    normal = _unit_normals(corners)
+    from_p, from_q = (np.einsum("ij,ij->i", x - corners[:, 0], normal) for x in (p, q))
+    opposite = (np.minimum(from_p, from_q) < -tolerance) & (np.maximum(from_p, from_q) > tolerance)
     difference = np.where(opposite, from_p - from_q, 1.0)
-    x = p + (from_p / difference)[:, None] * (q - p)
-    inside = opposite
-    for u, v in ((a, b), (b, c), (c, a)):
-        along = v - u
-        height = np.einsum("ij,ij->i", np.cross(normal, along), x - u)
-        inside = inside & (height >= -tolerance * np.linalg.norm(along, axis=1))
+    return opposite & _lies_over(p + (from_p / difference)[:, None] * (q - p), corners, normal, tolerance)
+
+
+def point_touches(points: np.ndarray, corners: np.ndarray, tolerance: float) -> np.ndarray:
+    """Whether points lie within a tolerance above or below their triangles, shape (pair_count,).
+
+    Args:
+        points: Points, shape (pair_count, 3) [m].
+        corners: Triangles, shape (pair_count, 3, 3) [m].
+        tolerance: Length below which two things coincide [m].
+    """
+    normal = _unit_normals(corners)
+    height = np.einsum("ij,ij->i", points - corners[:, 0], normal)
+    return (np.abs(height) <= tolerance) & _lies_over(points, corners, normal, tolerance)
+
+
+def _unit_normals(corners: np.ndarray) -> np.ndarray:
+    """Unit normals of triangles, zero where there is no area, shape (triangle_count, 3)."""
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.linalg.norm(normal, axis=1)
+    return normal / np.where(area > 0.0, area, 1.0)[:, None]
+
+
+def _lies_over(points: np.ndarray, corners: np.ndarray, normal: np.ndarray, tolerance: float) -> np.ndarray:
+    """Whether points lie over their triangles, looking along the normals, shape (pair_count,)."""
+    inside = normal.any(axis=1)
+    for k in range(3):
+        u, along = corners[:, k], corners[:, (k + 1) % 3] - corners[:, k]
+        height = np.einsum("ij,ij->i", np.cross(normal, along), points - u)
+        inside &= height >= -tolerance * np.linalg.norm(along, axis=1)
     return inside
+
+
+def edge_distances(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Distance between segments, pair by pair, shape (pair_count,) [m].
+
+    Args:
+        one: Ends of the first segments, none without length, shape (pair_count, 2, dimension) [m].
+        other: Ends of the second segments, none without length, shape (pair_count, 2, dimension) [m].
+    """
+    u, v, w = one[:, 1] - one[:, 0], other[:, 1] - other[:, 0], other[:, 0] - one[:, 0]
+    uu, vv, uv, uw, vw = (np.einsum("ij,ij->i", *pair) for pair in ((u, u), (v, v), (u, v), (u, w), (v, w)))
+    determinant = uu * vv - uv * uv
+    skew = determinant > _PARALLEL * uu * vv
+    s = np.clip(np.where(skew, uw * vv - vw * uv, 0.0) / np.where(skew, determinant, 1.0), 0.0, 1.0)
+    t = np.clip((s * uv - vw) / vv, 0.0, 1.0)
+    s = np.clip((t * uv + uw) / uu, 0.0, 1.0)
+    return np.linalg.norm(w + t[:, None] * v - s[:, None] * u, axis=1)
 
 
 def check_nesting(vertices: np.ndarray, component: np.ndarray, volumes: np.ndarray, winding) -> None:
     """Check that bodies are side by side and cavities inside a body.
 
     Args:
-        vertices: Positions, shape (vertex_count, 3) [m].
+        vertices: Positions, shape (vertex_count, dimension) [m].
         component: Component of each vertex, shape (vertex_count,).
-        volumes: Volume of each component, negative for a cavity, shape (component_count,) [m^3].
+        volumes: Volume, in 2D area, of each component, negative for a cavity, shape (component_count,) [m^d].
         winding: Function of points that gives their winding numbers about each component.
 
     Raises:
@@ -135,7 +206,8 @@ def check_nesting(vertices: np.ndarray, component: np.ndarray, volumes: np.ndarr
     bad = np.flatnonzero(around != np.where(volumes < 0.0, 1.0, 0.0))
     if len(bad):
         what = "inside out" if volumes[bad[0]] < 0.0 else "inside another one"
+        size = "area" if vertices.shape[1] == 2 else "volume"
         raise ValueError(
-            f"the component of vertex {first[bad[0]]} of the cage (volume {volumes[bad[0]]:.6g}) lies {what}; "
+            f"the component of vertex {first[bad[0]]} of the cage ({size} {volumes[bad[0]]:.6g}) lies {what}; "
             "reverse its faces, move it or remove it"
         )

@@ -69,7 +69,7 @@ class Opening:
         return values
 
     def created_positions(self) -> np.ndarray:
-        """Positions of the created vertices, shape (created_count, 3) [m]."""
+        """Positions of the created vertices, shape (created_count, dimension) [m]."""
         section, numbering, region = self.section, self.numbering, self.region
         tips = region.position[section.node_count + self.tip_chords]
         positions = self.created_values(section.node_position, tips)

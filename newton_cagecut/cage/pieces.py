@@ -25,7 +25,7 @@ class CagePiece:
     faces: np.ndarray
     """Its faces, ascending, shape (face_count,)."""
     volume: float
-    """Its volume, cavities taken off [m^3]."""
+    """Its volume, in 2D area, cavities taken off [m^d]."""
 
 
 def component_piece(cage: Cage) -> np.ndarray:

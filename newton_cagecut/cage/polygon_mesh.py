@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""Polygons as flat arrays with half-edges.
+"""Polygons, or in the plane segments, as flat arrays with half-edges.
 
 Section 5.2 of the paper manages the topology of a cut with half-edges; this is that structure, shared by
-cages and by the embedded surface. Nothing in it loops over faces in Python.
+cages and by the embedded surface. Nothing in it loops over faces in Python. The boundary of a plane cage is made of
+segments: faces of two corners, of which the first half-edge runs along the segment and the second back.
 """
 
 from __future__ import annotations
@@ -27,13 +28,32 @@ class PolygonMesh:
         """Take over the arrays; nothing is copied or checked.
 
         Args:
-            vertices: Positions, shape (vertex_count, 3) [m].
+            vertices: Positions, shape (vertex_count, dimension) [m].
             face_start: First half-edge of each face and the end of the last, shape (face_count + 1,).
             face_vertex: Vertex at which each half-edge starts, shape (half_edge_count,).
         """
         self.vertices = vertices
         self.face_start = face_start
         self.face_vertex = face_vertex
+
+    def extended(self, vertices: np.ndarray, face_size: np.ndarray, face_vertex: np.ndarray) -> PolygonMesh:
+        """The mesh with further vertices and faces behind its own.
+
+        Args:
+            vertices: Positions of the further vertices, shape (count, dimension) [m].
+            face_size: Number of corners of each further face, shape (face_count,).
+            face_vertex: Vertex at which each of their half-edges starts, in the new numbering, shape (corner_count,).
+        """
+        return PolygonMesh(
+            np.concatenate([self.vertices, vertices]),
+            np.concatenate([self.face_start, self.face_start[-1] + np.cumsum(face_size)]),
+            np.concatenate([self.face_vertex, face_vertex]),
+        )
+
+    @property
+    def dimension(self) -> int:
+        """Dimension of the space; in 2D the faces are segments."""
+        return self.vertices.shape[1]
 
     @property
     def vertex_count(self) -> int:
@@ -101,20 +121,25 @@ class PolygonMesh:
 
     @cached_property
     def corner_offset(self) -> np.ndarray:
-        """Each corner relative to the first corner of its face, shape (half_edge_count, 3) [m]."""
+        """Each corner relative to the first corner of its face, shape (half_edge_count, dimension) [m]."""
         return self.vertices[self.face_vertex] - self.vertices[self.face_vertex[self.face_start[:-1]]][self.face]
 
     @cached_property
     def face_area_vector(self) -> np.ndarray:
-        """Normal of each face times its area, shape (face_count, 3) [m^2]."""
+        """Normal of each face times its area, or its length in 2D, shape (face_count, dimension) [m^2 or m].
+
+        The inside lies behind a polygon that is counterclockwise, and to the left of a segment.
+        """
         offset = self.corner_offset
+        if self.dimension == 2:
+            return offset[1::2, ::-1] * [1.0, -1.0]
         return 0.5 * np.add.reduceat(np.cross(offset, offset[self.next]), self.face_start[:-1], axis=0)
 
     @cached_property
     def face_volume(self) -> np.ndarray:
-        """Signed volume of the cone from the mean vertex over each face, shape (face_count,) [m^3]."""
+        """Signed volume, in 2D area, of the cone from the mean vertex over each face, shape (face_count,) [m^d]."""
         first = self.vertices[self.face_vertex[self.face_start[:-1]]] - self.vertices.mean(axis=0)
-        return np.einsum("ij,ij->i", first, self.face_area_vector) / 3.0
+        return np.einsum("ij,ij->i", first, self.face_area_vector) / self.dimension
 
     @cached_property
     def vertex_component(self) -> np.ndarray:
@@ -145,7 +170,7 @@ class PolygonMesh:
 
     @cached_property
     def component_volumes(self) -> np.ndarray:
-        """Enclosed volume of each component, shape (component_count,) [m^3]."""
+        """Enclosed volume, in 2D area, of each component, shape (component_count,) [m^d]."""
         return np.bincount(self.face_component, weights=self.face_volume, minlength=self.component_count)
 
     @cached_property

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""Polygons of a section between two fronts.
+"""Polygons, or in 2D segments, of a section between two fronts.
 
 Section 5.2 of the paper needs the faces that a cut opens and the polygon that its latest step sweeps. Both are the part
 of the section between two front lines, as loops of labels; loops around holes are bridged to the loop around them.
@@ -47,8 +47,8 @@ class Region:
         crossing = self._done[section.chord_node]
         self._lower_chords = np.flatnonzero(crossing[:, 0] != crossing[:, 1])
         nodes, chords = section.node_count, section.chord_count
-        self.position = np.full((nodes + 3 * chords, 3), np.nan)
-        """Position of each label in use, shape (label_count, 3) [m]."""
+        self.position = np.full((nodes + 3 * chords, section.plane.dimension), np.nan)
+        """Position of each label in use, shape (label_count, dimension) [m]."""
         self.coordinates = np.full((nodes + 3 * chords, 2), np.nan)
         """Coordinates (a, s) of each label in use, shape (label_count, 2) [m]."""
         self.position[:nodes] = section.node_position
@@ -91,7 +91,12 @@ class Region:
             self.coordinates[shift + chord, 1] += step
 
     def polygons(self) -> list[list[int]]:
-        """The region as polygons without holes, counterclockwise about the plane's normal, as loops of labels."""
+        """The region as polygons without holes, counterclockwise about the plane's normal, as loops of labels.
+
+        In 2D they are segments, which have the normal on their right.
+        """
+        if self._section.plane.dimension == 2:
+            return self._segments()
         outer, holes = [], []
         for loop, group in self._boundary_loops():
             if len(loop) < 3:
@@ -108,6 +113,16 @@ class Region:
             else:
                 inside[owner].append(loop)
         return [bridge_holes(loop, inside[i], self.coordinates) for i, (loop, _, _) in enumerate(outer)]
+
+    def _segments(self) -> list[list[int]]:
+        """What of each chord lies between the fronts, from its far to its near end."""
+        section = self._section
+        low, high = section.chord_node.T
+        chord = np.flatnonzero(self.swept[low] & ~self._done[high])
+        low, high = low[chord], high[chord]
+        near = np.where(self._done[low], section.node_count + section.chord_count + chord, low)
+        far = np.where(self.swept[high], high, section.node_count + chord)
+        return np.stack([far, near], axis=1).tolist()
 
     def _owner(self, hole: list[int], group: int, outer: list[tuple[list[int], int, float]]) -> int | None:
         """Number of the smallest outer loop of the group that contains a hole."""

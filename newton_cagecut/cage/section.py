@@ -25,6 +25,9 @@ class Section:
     With a hinge, only what lies at ``s > 0`` counts, and the section begins at the hinge's vertices.
     """
 
+    window: tuple[float, float, float] | None = None
+    """Heel, tip and start of a knife where they are, off the nodes; None for a blade without [m]."""
+
     def __init__(
         self,
         mesh: PolygonMesh,
@@ -119,7 +122,8 @@ class Section:
         if len(corner) != np.abs(balance).sum():
             raise ValueError(
                 "the section does not close at the front of the cut before it: faces "
-                f"{np.flatnonzero(balance).tolist()[:4]} have no corner of their own there; move the blade a little"
+                f"{np.flatnonzero(balance).tolist()[:4]} have no corner of their own there; move the blade a "
+                "little, or begin a new cut where the cage has grown across the front"
             )
         vertex = mesh.face_vertex[corner]
         edges = np.concatenate([hinge.edges, mesh.twin[hinge.edges]])

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""Planar strips of a cut.
+"""Planar strips of a cut, straight ones in 2D.
 
-Section 5.2 of the paper. A strip is a pure function: (cage before it, plane, front) -> cage. Its section is computed
-once; every step opens it anew up to the front.
+Sections 4 and 5.2 of the paper. A strip is a pure function: (cage before it, plane, front) -> cage. Its section is
+computed once; every step opens it anew up to the front.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from .blade import BladePlane
 from .cage import Cage
 from .edit import CageEdit
 from .hinge import Hinge
+from .line_opening import LineOpening
+from .line_section import LineSection
 from .numbering import Numbering
 from .opening import Opening
 from .polygon_mesh import PolygonMesh
@@ -73,12 +75,7 @@ class Strip:
         self.hinge_wall = hinge_wall
         """Wall of which the front is the strip's hinge."""
         self._opened_wall = plane.wall()
-        self.section = Section(base.mesh, plane, hinge=hinge)
-        self.window: tuple[float, float, float] | None = None
-        """Heel, tip and start of the blade where they are, off the nodes [m]."""
-        if window is not None:
-            self.section = ClippedSection(self.section, *window, base.length_tolerance)
-            self.window = self.section.window
+        self.section = _section(base, plane, hinge, window)
         self._numbering = Numbering(self.section)
         self._reached_at = np.sort(self.section.node_coordinates[:, 1])
         touches = len(self._reached_at) > 0
@@ -129,15 +126,14 @@ class Strip:
         front = self.front_at(to)
         if front == state.front or len(self._reached_at) == 0:
             return self._stay(state, front, depth)
-        opening = Opening(self.section, self._numbering, front)
+        opening = (LineOpening if self.base.dimension == 2 else Opening)(self.section, self._numbering, front)
         region = Region(self.section, front, state.front)
         if len(opening.tip_chords) == 0 and not region.reached.any():
             return self._stay(state, front, depth)
         polygons = region.polygons()
         cage = open_cage(self.base, opening, self._opened_wall)
         created, moved, source = self._changed_vertices(state, cage, opening, region)
-        parts = [np.array(loop)[triangulate(region.coordinates[loop])] for loop in polygons]
-        triangles = np.concatenate([np.zeros((0, 3), dtype=np.int64), *parts])
+        simplices = self._simplices(region, polygons)
         edit = CageEdit(
             before=state.cage,
             cage=cage,
@@ -148,13 +144,20 @@ class Strip:
             complete=self.is_complete(front),
             swept=tuple(region.position[loop] for loop in polygons),
             swept_wall=np.full(len(polygons), self.wall),
-            swept_simplices=region.position[triangles],
-            swept_simplex_wall=np.full(len(triangles), self.wall),
+            swept_simplices=region.position[simplices],
+            swept_simplex_wall=np.full(len(simplices), self.wall),
             created=created,
             moved=moved,
             source_faces=source,
         )
         return StripState(cage, front, opening.half_edge_face), edit
+
+    def _simplices(self, region: Region, polygons: list[list[int]]) -> np.ndarray:
+        """Labels of the triangles of polygons, or in 2D of the segments that they are, shape (count, dimension)."""
+        if self.base.dimension == 2:
+            return np.array(polygons, dtype=np.int64).reshape(-1, 2)
+        parts = [np.array(loop)[triangulate(region.coordinates[loop])] for loop in polygons]
+        return np.concatenate([np.zeros((0, 3), dtype=np.int64), *parts])
 
     def _stay(self, state: StripState, front: float, depth: float) -> tuple[StripState, CageEdit]:
         none = np.zeros(0, dtype=np.int64)
@@ -168,7 +171,7 @@ class Strip:
             complete=self.is_complete(front),
             swept=(),
             swept_wall=none,
-            swept_simplices=np.zeros((0, 3, 3)),
+            swept_simplices=np.zeros((0, self.base.dimension, self.base.dimension)),
             swept_simplex_wall=none,
             created=none,
             moved=none,
@@ -196,6 +199,15 @@ class Strip:
         moved = np.flatnonzero((before.vertices != cage.vertices[: before.vertex_count]).any(axis=1))
         half_edge = half_edge[np.concatenate([created, moved])]
         return created, moved, np.where(half_edge >= 0, state.half_edge_face[half_edge], -1)
+
+
+def _section(base: Cage, plane: BladePlane, hinge: Hinge | None, window: tuple[float, float, float] | None) -> Section:
+    """The section of a cage with a plane or a line, less what lies beyond the blade's window."""
+    if base.dimension == 2:
+        start = {} if window is None else {"start": window[2], "tolerance": base.length_tolerance}
+        return LineSection(base.mesh, plane, vertex_piece=base.vertex_piece, hinge=hinge, **start)
+    section = Section(base.mesh, plane, hinge=hinge)
+    return section if window is None else ClippedSection(section, *window, base.length_tolerance)
 
 
 def open_cage(base: Cage, opening: Opening, wall: Wall) -> Cage:

@@ -122,8 +122,7 @@ def _choose_ears(corner: np.ndarray, remaining: np.ndarray, apart: np.ndarray) -
     candidate, quality = candidate[~blocked], quality[~blocked]
     order = np.argsort(-quality, kind="stable")
     ranked = quality[order]
-    good = ranked >= 0.25 * ranked[0]
-    good[0] = True
+    good = ranked >= min(0.25 * ranked[0], ranked[0])
     good[: len(order) // 2] |= ranked[: len(order) // 2] >= _POOR * ranked[0]
     keep = order[good]
     return _apart(candidate[keep], len(remaining))

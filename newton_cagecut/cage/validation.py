@@ -18,7 +18,7 @@ def check_loops(vertices: np.ndarray, face_start: np.ndarray, face_vertex: np.nd
     """Check indices and positions, before half-edges mean anything.
 
     Args:
-        vertices: Positions, shape (vertex_count, 3) [m].
+        vertices: Positions, shape (vertex_count, dimension) [m].
         face_start: First half-edge of each face and the end of the last, shape (face_count + 1,).
         face_vertex: Vertex at which each half-edge starts, shape (half_edge_count,).
         simple: Whether a face may visit a vertex only once.
@@ -32,9 +32,11 @@ def check_loops(vertices: np.ndarray, face_start: np.ndarray, face_vertex: np.nd
     size = np.diff(face_start)
     if len(size) == 0:
         raise ValueError("the cage has no faces")
-    bad = np.flatnonzero(size < 3)
+    is_plane = vertices.shape[1] == 2
+    bad = np.flatnonzero(size != 2 if is_plane else size < 3)
     if len(bad):
-        raise ValueError(f"face {bad[0]} of the cage has {size[bad[0]]} vertices; a face needs at least 3")
+        needs = "of a plane cage is a segment of 2" if is_plane else "needs at least 3"
+        raise ValueError(f"face {bad[0]} of the cage has {size[bad[0]]} vertices; a face {needs}")
     face = np.repeat(np.arange(len(size)), size)
     bad = np.flatnonzero((face_vertex < 0) | (face_vertex >= len(vertices)))
     if len(bad):
@@ -47,7 +49,8 @@ def check_loops(vertices: np.ndarray, face_start: np.ndarray, face_vertex: np.nd
         bad = np.flatnonzero(key[1:] == key[:-1])
         if len(bad):
             where, vertex = divmod(int(key[bad[0]]), len(vertices))
-            raise ValueError(f"face {where} of the cage visits vertex {vertex} twice; split it into simple polygons")
+            advice = "give it two ends" if is_plane else "split it into simple polygons"
+            raise ValueError(f"face {where} of the cage visits vertex {vertex} twice; {advice}")
     bad = np.flatnonzero(np.bincount(face_vertex, minlength=len(vertices)) == 0)
     if len(bad):
         raise ValueError(f"vertex {bad[0]} of the cage belongs to no face; remove the {len(bad)} unused vertices")
@@ -119,7 +122,7 @@ def check_planarity(mesh: PolygonMesh, normals: np.ndarray, tolerance: float) ->
 
     Args:
         mesh: The cage's polygons.
-        normals: Unit normal of each face's plane, shape (face_count, 3).
+        normals: Unit normal of each face's plane, or of its line in 2D, shape (face_count, dimension).
         tolerance: Largest spread across the plane [m].
 
     Raises:
@@ -139,7 +142,7 @@ def check_planarity(mesh: PolygonMesh, normals: np.ndarray, tolerance: float) ->
 
 
 def check_volume(mesh: PolygonMesh) -> None:
-    """Check that the enclosed volume is positive.
+    """Check that the enclosed volume, in 2D the area, is positive.
 
     Args:
         mesh: The cage's polygons.
@@ -149,4 +152,5 @@ def check_volume(mesh: PolygonMesh) -> None:
     """
     volume = float(mesh.face_volume.sum())
     if volume <= 0.0:
-        raise ValueError(f"the cage is inside out: its volume is {volume:.6g}; reverse all {mesh.face_count} faces")
+        what = "area" if mesh.dimension == 2 else "volume"
+        raise ValueError(f"the cage is inside out: its {what} is {volume:.6g}; reverse all {mesh.face_count} faces")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""Walls: the planar sheets that stop walks.
+"""Walls: the planar sheets, in 2D the lines, that stop walks.
 
 Section 4.1 of the paper measures distances to the boundary; original faces and swept cuts are both walls here.
 """
@@ -14,14 +14,18 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False)
 class Wall:
-    """A planar sheet; original face ``i`` of a cage is wall ``i``, every cut appends one."""
+    """A planar sheet, in 2D a straight line; original face ``i`` of a cage is wall ``i``, every cut appends one."""
 
     origin: np.ndarray
-    """A point of the plane, shape (3,) [m]."""
+    """A point of the wall, shape (dimension,) [m]."""
     axes: np.ndarray
-    """Orthonormal axes in the plane, shape (2, 3)."""
+    """Orthonormal axes in the wall, shape (dimension - 1, dimension)."""
     normal: np.ndarray
-    """Unit normal, ``axes[0] x axes[1]``; outward for an original face, shape (3,)."""
+    """Unit normal, shape (dimension,).
+
+    In 3D it is ``axes[0] x axes[1]``, outward for an original face. In 2D an original face has it outward, to the right
+    of the axis, and a cut to the left of the axis, which is the blade's direction.
+    """
     two_sided: bool
     """Whether the sheet has a front and a back, as cuts do."""
 
@@ -30,10 +34,10 @@ def face_walls(vertices: np.ndarray, face_start: np.ndarray, face_vertex: np.nda
     """The one-sided walls of a cage's original faces.
 
     Args:
-        vertices: Positions, shape (vertex_count, 3) [m].
+        vertices: Positions, shape (vertex_count, dimension) [m].
         face_start: First half-edge of each face and the end of the last, shape (face_count + 1,).
         face_vertex: Vertex at which each half-edge starts, shape (half_edge_count,).
-        normals: Unit outward normals, shape (face_count, 3).
+        normals: Unit outward normals, shape (face_count, dimension).
 
     Returns:
         One wall for each face, its first axis along the face's first edge.
@@ -44,6 +48,5 @@ def face_walls(vertices: np.ndarray, face_start: np.ndarray, face_vertex: np.nda
     first = corner[face_start[:-1] + 1] - corner[face_start[:-1]]
     first -= np.einsum("ij,ij->i", first, normals)[:, None] * normals
     first /= np.linalg.norm(first, axis=1, keepdims=True)
-    second = np.cross(normals, first)
-    axes = np.stack([first, second], axis=1)
+    axes = first[:, None] if vertices.shape[1] == 2 else np.stack([first, np.cross(normals, first)], axis=1)
     return tuple(Wall(origin[i], axes[i], normals[i], two_sided=False) for i in range(len(size)))

@@ -49,8 +49,7 @@ class ClippedSection(Section):
             borders.append(sign * limit)
             if not (value > limit).all():
                 self._clip(axis, sign, value - limit, borders[-1])
-        self.window: tuple[float, float, float] = tuple(borders)
-        """Heel, tip and start where they are, off the nodes [m]."""
+        self.window = tuple(borders)
         self._drop_unused()
 
     def _clip(self, axis: int, sign: float, inside: np.ndarray, border: float) -> None:

@@ -11,50 +11,64 @@ updates, the preconditioner and the test for convergence. On the CPU that test i
 being captured loops on it; otherwise CUDA launches all iterations, and those past convergence change nothing.
 
 Vectors are float32; dot products and step lengths are float64. The order of every sum is fixed.
+
+A solution that is confined to a plane costs nothing in the iterations: the preconditioner lets no direction out of it.
 """
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 
 import warp as wp
+
+from .plane import inverse_in_plane
 
 wp.set_module_options({"enable_backward": False})
 
 _BLOCK_SIZE = 256
 
 
-@wp.kernel(enable_backward=False)
-def begin_solve(
-    count: wp.array[int],
-    fixed: wp.array[int],
-    blocks: wp.array[wp.mat33],
-    residual: wp.array[wp.vec3],
-    inverses: wp.array[wp.mat33],
-    conditioned: wp.array[wp.vec3],
-    direction: wp.array[wp.vec3],
-    energy: wp.array[wp.float64],
-    running: wp.array[int],
-    iterations: wp.array[int],
-):
-    """Invert the diagonal blocks and take the first search direction; one thread block."""
-    thread = wp.tid()
-    energy_sum = wp.float64(0.0)
-    for i in range(thread, residual.shape[0], wp.block_dim()):
-        inverse = wp.mat33()
-        if i < count[0] and fixed[i] == 0:
-            inverse = wp.mat33(wp.inverse(wp.mat33d(blocks[i])))
-        z = inverse * residual[i]
-        inverses[i] = inverse
-        conditioned[i] = z
-        direction[i] = z
-        energy_sum += wp.float64(wp.dot(residual[i], z))
-    total = wp.tile_sum(wp.tile(energy_sum))[0]
-    if thread == 0:
-        energy[0] = total
-        energy[1] = total
-        iterations[0] = 0
-        running[0] = wp.where(total > wp.float64(0.0), 1, 0)
+@functools.cache
+def make_begin_kernel(plane: bool) -> wp.Kernel:
+    """The kernel that inverts the diagonal blocks and takes the first search direction; one thread block."""
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def begin_solve(
+        count: wp.array[int],
+        fixed: wp.array[int],
+        normal: wp.array[wp.vec3d],
+        blocks: wp.array[wp.mat33],
+        residual: wp.array[wp.vec3],
+        inverses: wp.array[wp.mat33],
+        conditioned: wp.array[wp.vec3],
+        direction: wp.array[wp.vec3],
+        energy: wp.array[wp.float64],
+        running: wp.array[int],
+        iterations: wp.array[int],
+    ):
+        thread = wp.tid()
+        energy_sum = wp.float64(0.0)
+        for i in range(thread, residual.shape[0], wp.block_dim()):
+            inverse = wp.mat33()
+            if i < count[0] and fixed[i] == 0:
+                if wp.static(plane):
+                    inverse = wp.mat33(inverse_in_plane(wp.mat33d(blocks[i]), normal[0]))
+                else:
+                    inverse = wp.mat33(wp.inverse(wp.mat33d(blocks[i])))
+            z = inverse * residual[i]
+            inverses[i] = inverse
+            conditioned[i] = z
+            direction[i] = z
+            energy_sum += wp.float64(wp.dot(residual[i], z))
+        total = wp.tile_sum(wp.tile(energy_sum))[0]
+        if thread == 0:
+            energy[0] = total
+            energy[1] = total
+            iterations[0] = 0
+            running[0] = wp.where(total > wp.float64(0.0), 1, 0)
+
+    return begin_solve
 
 
 @wp.kernel(enable_backward=False)
@@ -113,11 +127,20 @@ class ConjugateGradient:
     Args:
         count: Number of rows in use, shape (1,).
         fixed: Nonzero for rows that keep their value, shape (capacity,).
+        normal: Unit normal of the plane that changes of the solution stay in, shape (1,) vec3d; none by default.
         maximum_iterations: Iterations after which it stops.
         tolerance: Stops when the preconditioned norm of the residual has shrunk by this factor.
     """
 
-    def __init__(self, count: wp.array, fixed: wp.array, *, maximum_iterations: int, tolerance: float):
+    def __init__(
+        self,
+        count: wp.array,
+        fixed: wp.array,
+        *,
+        normal: wp.array | None = None,
+        maximum_iterations: int,
+        tolerance: float,
+    ):
         capacity, self.device = fixed.shape[0], fixed.device
         self.maximum_iterations = maximum_iterations
         with wp.ScopedDevice(self.device):
@@ -129,8 +152,8 @@ class ConjugateGradient:
             self._running, self.iterations = (wp.zeros(1, dtype=int) for _ in range(2))
         self._running_view = self._running.numpy() if self.device.is_cpu else None
         self._begin = self._record(
-            begin_solve,
-            [count, fixed, self.blocks, self.residual, self._inverses, self._conditioned, self.direction],
+            make_begin_kernel(normal is not None),
+            [count, fixed, normal, self.blocks, self.residual, self._inverses, self._conditioned, self.direction],
         )
         self._iterate = self._record(
             iterate,

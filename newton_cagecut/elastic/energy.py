@@ -10,7 +10,7 @@ import functools
 import warp as wp
 
 from .constitutive import CONSTITUTIVE_MODELS
-from .kernels import rest_gradient, tie
+from .kernels import make_deformation_function, tie
 
 wp.set_module_options({"enable_backward": False})
 
@@ -27,9 +27,10 @@ def find_displacement(
 
 
 @functools.cache
-def make_elastic_energy_kernel(model: str) -> wp.Kernel:
+def make_elastic_energy_kernel(model: str, plane: bool) -> wp.Kernel:
     """The kernel that finds the elastic energy of every quadrature point, for one constitutive model."""
     energy = CONSTITUTIVE_MODELS[model].energy
+    deformation = make_deformation_function(plane)
 
     @wp.kernel(enable_backward=False, module="unique")
     def elastic_energy(
@@ -43,9 +44,7 @@ def make_elastic_energy_kernel(model: str) -> wp.Kernel:
         energies: wp.array[wp.float64],
     ):
         q = wp.tid()
-        F = wp.identity(3, dtype=wp.float64) + rest_gradient(
-            q, displacement, gradients, anchors[q], vertex_count[0], rotation[0]
-        )
+        F = deformation(q, displacement, gradients, anchors[q], vertex_count[0], rotation[0])
         energies[q] = wp.float64(volumes[q]) * energy(F, material[0][0], material[0][1])
 
     return elastic_energy

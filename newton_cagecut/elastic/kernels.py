@@ -5,7 +5,7 @@
 
 F = I + sum_j (u_j - u_a) (x) grad w_j with u the displacement from rest and a the vertex of greatest weight: any
 translation drops out exactly, also for a piece that a cut has let fall far from the others. Gradients are those of the
-rest frame of the cage; ``rotation`` turns them into the frame of the rest positions.
+rest frame of the cage, and F is taken there; ``rotation`` turns that frame into the one of the rest positions.
 """
 
 from __future__ import annotations
@@ -36,17 +36,25 @@ def gather(
     return result
 
 
-@wp.func
-def rest_gradient(
-    q: int,
-    values: wp.array[wp.vec3],
-    gradients: wp.array2d[wp.vec3],
-    anchor: int,
-    vertex_count: int,
-    rotation: wp.mat33,
-) -> wp.mat33d:
-    """Gradient of a field in the frame of the rest positions."""
-    return wp.mat33d(gather(q, values, gradients, anchor, vertex_count) * wp.transpose(rotation))
+@functools.cache
+def make_deformation_function(plane: bool) -> wp.Function:
+    """The function that finds F at one quadrature point, in the cage's rest frame, of a plane or a solid body."""
+
+    @wp.func
+    def deformation(
+        q: int,
+        displacement: wp.array[wp.vec3],
+        gradients: wp.array2d[wp.vec3],
+        anchor: int,
+        vertex_count: int,
+        rotation: wp.mat33,
+    ) -> wp.mat33d:
+        change = wp.transpose(rotation) * gather(q, displacement, gradients, anchor, vertex_count)
+        if wp.static(plane):
+            change[2] = wp.vec3()
+        return wp.identity(3, dtype=wp.float64) + wp.mat33d(change)
+
+    return deformation
 
 
 @wp.kernel(enable_backward=False)
@@ -81,10 +89,11 @@ def begin_step(
 
 
 @functools.cache
-def make_strain_kernel(model: str) -> wp.Kernel:
+def make_strain_kernel(model: str, plane: bool) -> wp.Kernel:
     """The kernel that finds stress and stiffness at the quadrature points, for one constitutive model."""
     stress = CONSTITUTIVE_MODELS[model].stress
-    stiffness_function = make_stiffness_function(model)
+    stiffness_function = make_stiffness_function(model, plane)
+    deformation = make_deformation_function(plane)
 
     @wp.kernel(enable_backward=False, module="unique")
     def strain(
@@ -104,11 +113,11 @@ def make_strain_kernel(model: str) -> wp.Kernel:
         count, anchor, R = vertex_count[0], anchors[q], rotation[0]
         mu, lam = material[0][0], material[0][1]
         volume = wp.float64(volumes[q])
-        F = wp.identity(3, dtype=wp.float64) + rest_gradient(q, displacement, gradients, anchor, count, R)
+        F = deformation(q, displacement, gradients, anchor, count, R)
         stiffness = stiffness_function(F, mu, lam, volume * scales[1])
-        stiffness.right = wp.transpose(R) * stiffness.right
+        stiffness.left = R * stiffness.left
         stiffnesses[q] = stiffness
-        force = wp.mat33(scales[0] * volume * stress(F, mu, lam)) * R
+        force = R * wp.mat33(scales[0] * volume * stress(F, mu, lam))
         tensions[q] = force + apply_stiffness(stiffness, gather(q, predicted, gradients, anchor, count))
 
     return strain

@@ -16,38 +16,45 @@ from __future__ import annotations
 import numpy as np
 
 _STIFFNESS_SHARE = 0.1
-"""Least integral of |grad w_i|^2, in sizes of the vertex's neighbourhood."""
+"""Least integral of |grad w_i|^2, in sizes of the vertex's neighbourhood, of a plane body in thicknesses."""
 
 _MASS_SHARE = 0.01
-"""Least integral of w_i^2, in cubes of that size."""
+"""Least integral of w_i^2, in cubes of that size, of a plane body in its squares times thicknesses."""
 
 _MISFIT = 1.0e-6
-"""Error of an affine combination, in sizes, above which there is none: the neighbours lie in a plane."""
+"""Error of an affine combination, in sizes, above which there is none: the neighbours lie in a plane or on a line."""
 
 
 def stabilize(
-    vertices: np.ndarray, edges: np.ndarray, weights: np.ndarray, gradients: np.ndarray, volumes: np.ndarray
+    vertices: np.ndarray,
+    edges: np.ndarray,
+    weights: np.ndarray,
+    gradients: np.ndarray,
+    volumes: np.ndarray,
+    *,
+    thickness: float = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Matrices that tie undersampled vertices to their neighbours.
 
     Args:
-        vertices: Rest positions of the cage's vertices, shape (n, 3) [m].
+        vertices: Rest positions of the cage's vertices, shape (n, dimension) [m].
         edges: Pairs of vertices that share an edge, shape (m, 2).
         weights: Weights at the quadrature points, shape (q, n).
         gradients: Gradients of the weights, shape (q, n, 3) [1/m].
         volumes: Volumes of the quadrature points, shape (q,) [m^3].
+        thickness: Thickness of a plane body [m]; 1 of a solid one, which has none.
 
     Returns:
         Stiffness over the shear modulus, shape (n, n) [m], and mass over the density, shape (n, n) [m^3].
     """
-    count = len(vertices)
+    count, dimension = vertices.shape
     length = np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1)
     ends = edges.reshape(-1)
     size = np.bincount(ends, np.repeat(length, 2), count) / np.maximum(np.bincount(ends, minlength=count), 1)
     seen_stiffness = np.einsum("q,qjk,qjk->j", volumes, gradients, gradients)
     seen_mass = np.einsum("q,qj,qj->j", volumes, weights, weights)
-    missing_stiffness = np.maximum(_STIFFNESS_SHARE * size - seen_stiffness, 0.0)
-    missing_mass = np.maximum(_MASS_SHARE * size**3 - seen_mass, 0.0)
+    missing_stiffness = np.maximum(_STIFFNESS_SHARE * thickness * size ** (dimension - 2) - seen_stiffness, 0.0)
+    missing_mass = np.maximum(_MASS_SHARE * thickness * size**dimension - seen_mass, 0.0)
     stiffness, mass = np.zeros((count, count)), np.zeros((count, count))
     adjacent = np.zeros((count, count), dtype=bool)
     adjacent[edges[:, 0], edges[:, 1]] = adjacent[edges[:, 1], edges[:, 0]] = True
@@ -60,19 +67,29 @@ def stabilize(
 
 
 def _deviation(i: int, vertices: np.ndarray, adjacent: np.ndarray, size: float) -> np.ndarray:
-    """c_i: vertex i minus the affine combination of vertices up to two edges away that gives it; 0 if none does."""
-    near = adjacent[i] | adjacent[adjacent[i]].any(axis=0)
+    """c_i: vertex i minus the affine combination of the nearest vertices along edges that gives it; 0 if none does.
+
+    It takes those up to two edges away, and farther ones where they lie in a plane, or on a line, apart from it.
+    """
     offset = vertices - vertices[i]
     distance = np.linalg.norm(offset, axis=1)
     # The vertex itself and its twin on the other side of the cut, if any, are at distance zero.
-    neighbors = np.flatnonzero(near & (distance > 1.0e-9 * size))
-    row = np.zeros(len(vertices))
-    conditions = np.vstack([np.ones(len(neighbors)), offset[neighbors].T / size])
-    scaled = conditions * (size / distance[neighbors])
-    combination = np.linalg.lstsq(scaled, np.array([1.0, 0.0, 0.0, 0.0]), rcond=1.0e-9)[0] * (
-        size / distance[neighbors]
-    )
-    if np.abs(conditions @ combination - [1.0, 0.0, 0.0, 0.0]).max() < _MISFIT:
-        row[neighbors] = -combination
-        row[i] = 1.0
+    apart = distance > 1.0e-9 * size
+    target = np.eye(1, 1 + vertices.shape[1])[0]
+    row, near, grown = np.zeros(len(vertices)), adjacent[i], _grow(adjacent[i], adjacent)
+    while (grown != near).any():
+        near, grown = grown, _grow(grown, adjacent)
+        neighbors = np.flatnonzero(near & apart)
+        reach = size / distance[neighbors]
+        conditions = np.vstack([np.ones(len(neighbors)), offset[neighbors].T / size])
+        combination = np.linalg.lstsq(conditions * reach, target, rcond=1.0e-9)[0] * reach
+        if np.abs(conditions @ combination - target).max() < _MISFIT:
+            row[neighbors] = -combination
+            row[i] = 1.0
+            break
     return row
+
+
+def _grow(near: np.ndarray, adjacent: np.ndarray) -> np.ndarray:
+    """Vertices, as a mask, and those that share an edge with one of them."""
+    return near | adjacent[near].any(axis=0)

@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import warp as wp
 
-from . import energy, kernels, mass, update
+from . import energy, kernels, mass, plane, update
 from .conjugate_gradient import ConjugateGradient
 from .material import Material
 from .stabilization import stabilize
@@ -46,25 +46,31 @@ class LinearTerm(Protocol):
 class ReducedSystem:
     """An elastic body whose degrees of freedom are the vertices of its cage.
 
+    A plane body is in plane strain: it moves in the plane through its rest positions that is normal to the third axis
+    of its rest frame, and takes nothing along that axis: not of gravity, forces, further terms or initial velocities.
+
     Arrays are used in place: assign to them, then call :meth:`refresh`. :meth:`step` only launches kernels and can be
     captured in a CUDA graph, which stays valid across edits.
 
     Args:
         rest: Rest positions of the cage's vertices, shape (vertex_capacity,) vec3 [m].
         weights: Weights at the quadrature points, shape (point_count, vertex_capacity) float.
-        gradients: Gradients of the weights, shape (point_count, vertex_capacity) vec3 [1/m].
-        volumes: Volumes of the quadrature points, shape (point_count,) float or NumPy [m^3].
+        gradients: Gradients of the weights, shape (point_count, vertex_capacity) vec3 [1/m]; those of a plane body have
+            the third component 0.
+        volumes: Volumes of the quadrature points, shape (point_count,) float or NumPy [m^3]; those of a plane body are
+            areas times its thickness.
         material: The material.
         vertex_count: Number of vertices in use, shape (1,) int.
         fixed: Nonzero for vertices that keep their velocity, shape (vertex_capacity,) int; none if not given.
         rotation: Rotation from the gradients' frame to that of the rest positions, shape (1,) mat33; identity if not
             given.
+        thickness: Thickness of a plane body [m]; the body is solid if not given.
         maximum_iterations: Most iterations of a solve.
         tolerance: Factor by which a solve shrinks the preconditioned residual.
 
     Raises:
         TypeError: If an array has the wrong type.
-        ValueError: If an array has the wrong shape or lies on another device.
+        ValueError: If an array has the wrong shape or lies on another device, or the thickness is not positive.
     """
 
     def __init__(
@@ -78,11 +84,13 @@ class ReducedSystem:
         *,
         fixed: wp.array | None = None,
         rotation: wp.array | None = None,
+        thickness: float | None = None,
         maximum_iterations: int = 150,
-        tolerance: float = 1.0e-4,
+        tolerance: float = 1.0e-5,
     ):
         self.device, self.vertex_capacity, self.point_count = rest.device, rest.shape[0], weights.shape[0]
         capacity, points = self.vertex_capacity, self.point_count
+        self.thickness = thickness
         with wp.ScopedDevice(self.device):
             self.rest, self.weights, self.gradients, self.vertex_count = rest, weights, gradients, vertex_count
             self.volumes = volumes if isinstance(volumes, wp.array) else wp.array(volumes, dtype=float)
@@ -93,6 +101,7 @@ class ReducedSystem:
             self.stabilizing_stiffness, self.stabilizing_mass = (
                 wp.zeros((capacity, capacity), dtype=float) for _ in range(2)
             )
+            self._normal = wp.zeros(1, dtype=wp.vec3d) if self.is_plane else None
             self._anchors = wp.zeros(points, dtype=int)
             self._material = wp.zeros(1, dtype=wp.vec4d)
             self._scales = wp.zeros(2, dtype=wp.float64)
@@ -108,10 +117,19 @@ class ReducedSystem:
         self._check_arrays()
         self.material = material
         self._solver = ConjugateGradient(
-            self.vertex_count, self.fixed, maximum_iterations=maximum_iterations, tolerance=tolerance
+            self.vertex_count,
+            self.fixed,
+            normal=self._normal,
+            maximum_iterations=maximum_iterations,
+            tolerance=tolerance,
         )
         self._record_launches()
         self.set_material(material)
+
+    @property
+    def is_plane(self) -> bool:
+        """Whether the body is in plane strain."""
+        return self.thickness is not None
 
     @property
     def iterations(self) -> wp.array:
@@ -136,12 +154,13 @@ class ReducedSystem:
         """Tie vertices that the quadrature hardly sees to their neighbours; call :meth:`refresh` afterwards.
 
         Args:
-            vertices: Rest positions of the cage's vertices in use, shape (n, 3) [m].
+            vertices: The cage's vertices in use in its rest frame, shape (n, 3), or (n, 2) of a plane body [m].
             edges: Pairs of vertices that share an edge of the cage, shape (m, 2).
         """
         count = len(vertices)
         weights, gradients = self.weights.numpy()[:, :count], self.gradients.numpy()[:, :count]
-        matrices = stabilize(vertices, edges, weights, gradients, self.volumes.numpy())
+        thickness = self.thickness if self.is_plane else 1.0
+        matrices = stabilize(vertices, edges, weights, gradients, self.volumes.numpy(), thickness=thickness)
         for array, matrix in zip((self.stabilizing_stiffness, self.stabilizing_mass), matrices, strict=True):
             padded = np.zeros(array.shape, dtype=np.float32)
             padded[:count, :count] = matrix
@@ -185,6 +204,8 @@ class ReducedSystem:
             [dt, positions, velocities, gravity, self.rest, self.fixed, self._material]
             + [self._displacement, solver.solution, self._lag, self._predicted, self._scales],
         )
+        if self.is_plane:
+            self._launch(plane.confine_start, self.vertex_capacity, [self._normal, solver.solution, self._predicted])
         self._strain.launch()
         self._launch(
             kernels.find_residual,
@@ -199,6 +220,8 @@ class ReducedSystem:
             term.add_residual(dt, self._predicted, solver.residual, solver.blocks)
             solver.solve(lambda: self._multiply_with(term))
         self._launch(update.find_velocities, self.vertex_capacity, [velocities, solver.solution, self._predicted])
+        if self.is_plane:
+            self._launch(plane.confine_velocities, self.vertex_capacity, [self._normal, self._predicted])
         self._launch(
             update.find_rates,
             self.point_count,
@@ -211,6 +234,12 @@ class ReducedSystem:
             [dt, positions, velocities, self._predicted, self._limit, self.fixed, self.vertex_count]
             + [positions_out, velocities_out],
         )
+        if self.is_plane:
+            self._launch(
+                plane.confine_end,
+                self.vertex_capacity,
+                [self._normal, self.rest, self.vertex_count, positions_out, velocities_out],
+            )
 
     def energy(self, positions: wp.array, velocities: wp.array) -> Energy:
         """Energies of a state, read on the host: for reports, not for captured code.
@@ -258,12 +287,12 @@ class ReducedSystem:
         count, model = self.vertex_count, self.material.model
         body = [self.gradients, self._anchors, self.volumes, self._material, self.rotation]
         self._strain = self._record(
-            kernels.make_strain_kernel(model),
+            kernels.make_strain_kernel(model, self.is_plane),
             points,
             [self._displacement, self._predicted, *body, self._scales, count, self._stiffnesses, self._tensions],
         )
         self._elastic_energy = self._record(
-            energy.make_elastic_energy_kernel(model),
+            energy.make_elastic_energy_kernel(model, self.is_plane),
             points,
             [self._displacement, *body, count, self._point_energies],
         )
@@ -293,9 +322,13 @@ class ReducedSystem:
             self._record(mass.assemble_mass, (capacity, capacity), [self.weights, self.stabilizing_mass, *masses]),
             self._record(mass.lump_mass, capacity, [*masses, self.vertex_mass]),
         )
+        if self.is_plane:
+            self._refresh_launches += (self._record(plane.find_normal, 1, [self.rotation, self._normal]),)
 
     def _check_arrays(self) -> None:
-        """Check types, shapes and devices of the arrays."""
+        """Check types, shapes and devices of the arrays, and the thickness."""
+        if self.is_plane and not (np.isfinite(self.thickness) and self.thickness > 0.0):
+            raise ValueError(f"ReducedSystem thickness is {self.thickness} m; it must be positive.")
         capacity, points = self.vertex_capacity, self.point_count
         expected = {
             "rest": (wp.vec3, (capacity,)),

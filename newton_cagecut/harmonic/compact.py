@@ -3,44 +3,81 @@
 
 """Marking the walks that an edit concerns, and gathering them so that only they are run."""
 
-from __future__ import annotations
+from functools import cache
 
 import numpy as np
 import warp as wp
 
-from .bounds import PieceBounds, QuantizedExtents, overlaps_any
-from .landing import KEY_MASK, Landings
+from .bounds_kind import BoundsKind
+from .landing import CAPPED, KEY_MASK, PASSED
+from .points import QueryPoints
+from .walk import ON_WALL
 
 wp.set_module_options({"enable_backward": False})
+
+CPU_BLOCK = 4096
+"""Walks that one thread marks on a CPU, where a thread costs more than a walk; on CUDA it is one."""
 
 KEPT = wp.constant(wp.uint8(0))
 REWALK = wp.constant(wp.uint8(1))
 ON_FACE = wp.constant(wp.uint8(2))
+RESUME = wp.constant(wp.uint8(3))
+
+UNCHANGED_KEY = wp.constant(wp.uint8(0))
+CHANGED_KEY = wp.constant(wp.uint8(1))
+"""A wall's side of which faces changed."""
+RETIRED_KEY = wp.constant(wp.uint8(2))
+"""A wall's side that bounds the cage no longer."""
 
 
-@wp.kernel(enable_backward=False)
-def mark_walks(
-    offset: int,
-    walks: int,
-    bounds: wp.array[QuantizedExtents],
-    pieces: PieceBounds,
-    landings: Landings,
-    changed_keys: wp.array[wp.uint8],
-    marks: wp.array[wp.uint8],
-    touched: wp.array[wp.uint8],
-):
-    """Sort a walk into the paper's three classes (section 5.2): walk again, evaluate again on its face, reuse."""
-    walk = offset + wp.tid()
-    mark = KEPT
-    on_changed_face = changed_keys[landings.key[walk] & KEY_MASK] != wp.uint8(0)
-    if overlaps_any(bounds[walk], pieces):
-        mark = REWALK
-    elif on_changed_face:
-        mark = ON_FACE
-    marks[walk] = mark
-    # A walk that is walked again touches its point only if it then ends elsewhere, which the walk itself finds out.
-    if on_changed_face:
-        touched[walk // walks] = wp.uint8(1)
+@cache
+def make_mark_kernel(bounds_kind: BoundsKind) -> wp.Kernel:
+    """Make the kernel that sorts walks by what an edit means for them.
+
+    Args:
+        bounds_kind: Kind of the walks' bounds.
+    """
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def mark_walks(
+        offset: int,
+        block: int,
+        walk_count: int,
+        walks: int,
+        bounds: wp.array2d[bounds_kind.level_type],
+        pieces: bounds_kind.PieceBounds,
+        points: QueryPoints,
+        keys: wp.array[wp.int32],
+        key_changes: wp.array[wp.uint8],
+        marks: wp.array[wp.uint8],
+        touched: wp.array[wp.uint8],
+    ):
+        """Sort walks into the paper's three classes (section 5.2): walk again, evaluate again on its face, reuse.
+
+        A fourth one are walks that go on from their landings, since the wall there has retired (section 8). That needs
+        a walk that has come through no gate before, and that no cap has stopped on its way to the wall.
+        """
+        first = (offset + wp.tid()) * block
+        for walk in range(first, wp.min(first + block, walk_count)):
+            mark = KEPT
+            key = keys[walk]
+            change = key_changes[key & KEY_MASK]
+            # An evaluated landing touches its point if its boundary value changes, which landing finds out; a walk that
+            # is walked again, if it ends elsewhere, or on a changed face.
+            if change == CHANGED_KEY:
+                mark = ON_FACE
+            elif change == RETIRED_KEY:
+                mark = REWALK
+                if (key & (PASSED | CAPPED)) == 0 and points.first_radius[walk // walks] >= ON_WALL:
+                    mark = RESUME
+            if int(bounds[pieces.first_component, walk]) <= pieces.first_limit:
+                if bounds_kind.overlaps_any(bounds, walk, pieces):
+                    mark = REWALK
+                    if change == CHANGED_KEY:
+                        touched[walk // walks] = wp.uint8(1)
+            marks[walk] = mark
+
+    return mark_walks
 
 
 @wp.kernel(enable_backward=False)

@@ -11,7 +11,7 @@ import numpy as np
 import warp as wp
 
 from ..cage import Cage, CageEdit, check_inside
-from .compact import ON_FACE, REWALK, gather, mark_walks
+from .compact import CPU_BLOCK, ON_FACE, RESUME, REWALK, gather, make_mark_kernel
 from .domain import Domain, DomainChange
 from .landing import LANDING_DTYPES
 from .launch import launch
@@ -33,7 +33,8 @@ class HarmonicCoordinates:
         cuttable: Whether to keep the walk cache that updates need (64 bytes a walk).
         device: Where to walk; Warp's current device by default.
         correction: "harmonic" (control variates), "affine" (paper, equation 5) or "none" (plain means).
-        bounds: Bounding volume of a walk; "dop18".
+        bounds: Bounding volume of a walk: "dop18", "dop26", "aabb" or "sphere". Smaller ones send more walks to be
+            walked again; the results are identical.
         distance: "grid" (candidate grid) or "all" (every wall); the results are identical.
         quads: "mean_value" (paper, equation 4) or "harmonic" for convex quads of the cage.
         epsilon: Distance at which a walk lands, relative to half of the longest side of the cage's bounding box.
@@ -77,7 +78,7 @@ class HarmonicCoordinates:
         else:
             self.domain = Domain(cage, quads=quads, distance=distance, device=wp.get_device(device))
         self._cage = self.domain.cage
-        points = _checked_points(points)
+        points = _checked_points(points, self.domain.dimension)
         keys = self._checked_keys(point_keys, len(points))
         check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
         self._walker = Walker(
@@ -114,7 +115,7 @@ class HarmonicCoordinates:
     @property
     def gradients(self) -> np.ndarray:
         """The weights' gradients [1/m] of the points that have them, shape (gradient_count, cage.vertex_count, 3)."""
-        return self._walker.gradients.numpy()[:, : self.cage.vertex_count].copy()
+        return self._walker.gradients.numpy()[:, : self.cage.vertex_count, : self.domain.dimension].copy()
 
     @property
     def weights_array(self) -> wp.array:
@@ -139,12 +140,12 @@ class HarmonicCoordinates:
         """The cached landings: "key", "point", "face", "edge", "param", a row a walk; copies."""
         landings = self._cache_of("landings").landings
         count = self.point_count * self.walks
-        return {name: getattr(landings, name).numpy()[:count].copy() for name in LANDING_DTYPES}
+        return {name: getattr(landings, name).numpy()[:count].copy() for name in LANDING_DTYPES[self.domain.dimension]}
 
     @property
     def bounds(self) -> np.ndarray:
-        """The cached bounds of the walks, quantised, shape (walk_count, 18); a copy."""
-        return self._cache_of("bounds").bounds.numpy()[: self.point_count * self.walks].copy()
+        """The cached bounds of the walks, quantised, a row a walk; a copy."""
+        return self._cache_of("bounds").bounds.numpy()[:, : self.point_count * self.walks].T.copy()
 
     def memory(self) -> dict[str, int]:
         """Bytes of each part on the device."""
@@ -153,16 +154,17 @@ class HarmonicCoordinates:
     def update(self, edit: CageEdit) -> UpdateStats:
         """Bring the weights up to date with an edit of the cage.
 
-        Only the walks that the new piece of cut may have met are walked again, only landings on changed faces are
-        evaluated again, only points with either are resolved again (paper, section 5.2). The result equals that of
-        ``recompute()`` bit for bit.
+        Only the walks that the new piece of wall may have met are walked again, only landings on changed faces are
+        evaluated again, only points with either are resolved again (paper, section 5.2). Where an edit has moved a face
+        outward, the walks that landed on it go on from there (section 8). The result equals that of ``recompute()`` bit
+        for bit.
 
         Args:
             edit: The next edit of the cage that the coordinates hold.
 
         Raises:
-            ValueError: There is no walk cache, the edit does not start from the present cage, or the cage has more
-                vertices than were reserved. Nothing has changed then.
+            ValueError: There is no walk cache, the edit does not start from the present cage, an obstacle covers
+                points, the cage has too many vertices or extensions. Nothing has changed then.
         """
         walker = self._cache_of("update")
         if edit.before is not self._cage:
@@ -170,10 +172,12 @@ class HarmonicCoordinates:
                 "update: the edit starts from another cage than the coordinates hold; pass every edit, in order"
             )
         walker.require_vertices(edit.cage.vertex_count)
+        walker.require_inside(edit)
         stats = self._new_stats()
         with stats.time("walls", self.domain.device):
             change = self.domain.apply(edit)
             walker.grow_vertices(edit.cage.vertex_count)
+            walker.free_points(edit.retired_walls)
             if change.regrouped:
                 walker.group_points()
         self._cage = edit.cage
@@ -227,7 +231,7 @@ class HarmonicCoordinates:
                 there are more points than were reserved. Nothing has changed then.
         """
         walker = self._cache_of("set_points")
-        points = _checked_points(points)
+        points = _checked_points(points, self.domain.dimension)
         indices = self._checked_indices(indices, len(points))
         keys = self._checked_keys(point_keys, len(points))
         walker.require_points(int(indices.max(initial=-1)) + 1)
@@ -256,7 +260,8 @@ class HarmonicCoordinates:
         Raises:
             ValueError: A key is of no wall.
         """
-        self._checked_keys(point_keys, len(_checked_points(points)), lowest=0)
+        count = len(_checked_points(points, self.domain.dimension))
+        self._checked_keys(point_keys, count, lowest=0)
         return self.weights_at(points, point_keys, walks=walks)
 
     def weights_at(
@@ -291,24 +296,27 @@ class HarmonicCoordinates:
         walker, device = self._walker, self.domain.device
         walk_count = self.point_count * self.walks
         with stats.time("check", device):
+            kind = walker.bounds_kind
+            pieces = kind.bound_pieces(change.polygons, change.directions, device)
             marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
             touched = wp.zeros(self.point_count, dtype=wp.uint8, device=device)
-            changed = wp.array(change.changed_keys.astype(np.uint8), dtype=wp.uint8, device=device)
-            launch(
-                mark_walks,
-                walk_count,
-                [self.walks, walker.bounds, change.pieces, walker.landings, changed, marks, touched],
-                device=device,
-            )
-            rewalk, on_face = gather(marks, int(REWALK)), gather(marks, int(ON_FACE))
+            changes = wp.array(change.key_changes, dtype=wp.uint8, device=device)
+            block = 1 if device.is_cuda else CPU_BLOCK
+            inputs = [block, walk_count, self.walks, walker.bounds, pieces, walker.points, walker.landings.key]
+            inputs += [changes, marks, touched]
+            launch(make_mark_kernel(kind), -(-walk_count // block), inputs, device=device, smallest_chunk=8)
+            rewalk, on_face, resume = (gather(marks, int(mark)) for mark in (REWALK, ON_FACE, RESUME))
         stats.checked = walk_count
-        stats.rewalked, stats.on_face = rewalk.size, on_face.size
+        stats.rewalked, stats.on_face, stats.resumed = rewalk.size, on_face.size, resume.size
         walker.walk(rewalk, stats, touched=touched)
         walker.land(rewalk, stats, part="rewalk")
-        walker.land(on_face, stats, part="on_face")
+        if resume.size:
+            walker.walk(resume, stats, touched=touched, resumed=True)
+            walker.land(resume, stats, part="resume")
+        walker.land(on_face, stats, part="on_face", touched=touched)
         concerned = touched.numpy() != 0
         if walker.options.correction != "none":
-            concerned |= self.degrees == 0  # An affine correction is spread over all vertices of a component.
+            concerned |= self.degrees == 0  # An affine correction is spread over all vertices of a piece.
         walker.resolve(np.flatnonzero(concerned), stats)
 
     def _cache_of(self, wanted: str) -> Walker:
@@ -347,10 +355,10 @@ class HarmonicCoordinates:
         return indices
 
 
-def _checked_points(points: np.ndarray) -> np.ndarray:
+def _checked_points(points: np.ndarray, dimension: int) -> np.ndarray:
     points = np.asarray(points, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise ValueError(f"points must have the shape (n, 3), not {points.shape}")
+    if points.ndim != 2 or points.shape[1] != dimension:
+        raise ValueError(f"points must have the shape (n, {dimension}), not {points.shape}")
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
         raise ValueError(f"point {bad[0]} is not finite: {points[bad[0]]}")

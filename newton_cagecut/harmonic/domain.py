@@ -11,12 +11,13 @@ import numpy as np
 import warp as wp
 
 from ..cage import Cage, CageEdit
-from .bounds import PieceBounds, bound_pieces
-from .faces import NESTED, FaceTables, build_face_tables
-from .frame import UnitFrame
+from .compact import CHANGED_KEY, RETIRED_KEY, UNCHANGED_KEY
+from .faces import FaceTables, build_face_tables
+from .frame import UnitFrame, lifted
 from .grid import CandidateGrid
 from .launch import launch
-from .walls import Walls, measure_distance
+from .nearest import measure_distance
+from .walls import MOST_GATES, Walls
 
 
 @dataclass(frozen=True)
@@ -24,13 +25,15 @@ class DomainChange:
     """What an edit means for walks.
 
     Args:
-        pieces: Bounds of the new pieces of wall.
-        changed_keys: Whether landings with key 2 * wall + side need their face again, shape (2 * wall_count,).
+        polygons: New pieces of wall in the unit frame, shape (k, 3) each.
+        directions: Directions along which each of them is thin, shape (2, 3) each.
+        key_changes: What becomes of landings with key 2 * wall + side, shape (2 * wall_count,); see ``compact.py``.
         regrouped: Whether the pieces are other ones than before.
     """
 
-    pieces: PieceBounds
-    changed_keys: np.ndarray
+    polygons: list[np.ndarray]
+    directions: list[np.ndarray]
+    key_changes: np.ndarray
     regrouped: bool
 
 
@@ -65,17 +68,26 @@ class Domain:
         self.device = device
         self.frame = UnitFrame.of(cage.vertices)
         self.walls = Walls(self.frame, device=device)
-        faces = np.asarray(cage.triangle_face)
-        self._append(cage.vertices[np.asarray(cage.triangles)], np.asarray(cage.face_wall)[faces], cage)
+        self._append(cage.vertices[cage.simplices], cage.face_wall[cage.simplex_face], cage)
         resolution = grid_resolution if distance == "grid" else 1
         self.grid = CandidateGrid(self.walls, resolution=resolution)
-        self.faces = build_face_tables(cage, self.frame, quads=quads, device=device)
+        self.faces = self.faces_before = build_face_tables(cage, self.frame, quads=quads, device=device)
         self._last: tuple[CageEdit, DomainChange] | None = None
+
+    @property
+    def dimension(self) -> int:
+        """Dimension of the space."""
+        return self.cage.dimension
+
+    @property
+    def gated(self) -> bool:
+        """Whether walls have become gates."""
+        return self.walls.gate_count > 0
 
     @property
     def has_nested_faces(self) -> bool:
         """Whether any face needs a nested walk."""
-        return bool((self.faces.kind.numpy() == int(NESTED)).any())
+        return self.faces.nested_count > 0
 
     def pieces_of(self, points: np.ndarray) -> np.ndarray:
         """Piece of the cage that each rest position lies in; all 0 while there is one. Shape (n,)."""
@@ -85,16 +97,16 @@ class Domain:
 
     def distance_to_walls(self, points: np.ndarray) -> np.ndarray:
         """Distance of rest positions [m] to the nearest wall [m], shape (n,)."""
-        unit = wp.array(self.frame.to_unit(points).astype(np.float32), dtype=wp.vec3, device=self.device)
+        unit = wp.array(self.frame.to_space(points), dtype=wp.vec3, device=self.device)
         distance = wp.empty(len(points), dtype=float, device=self.device)
-        launch(measure_distance, len(points), [self.walls.data, unit, distance], device=self.device)
+        launch(measure_distance, len(points), [self.walls.data, self.grid.cells, unit, distance], device=self.device)
         return distance.numpy() * self.frame.half_side
 
     def apply(self, edit: CageEdit) -> DomainChange:
         """Append an edit's walls and take over its faces; the same edit a second time changes nothing.
 
         Raises:
-            ValueError: The edit starts from another cage than the present one.
+            ValueError: The edit starts from another cage than the present one, or walls were retired too often.
         """
         if self._last is not None and self._last[0] is edit:
             return self._last[1]
@@ -102,11 +114,21 @@ class Domain:
             raise ValueError(
                 "update: the edit starts from another cage than the one held; pass every edit of a cut, in order"
             )
-        for wall in np.unique(edit.swept_simplex_wall).tolist():
-            corners = edit.swept_simplices[edit.swept_simplex_wall == wall]
-            first = self.walls.triangle_count
-            self._append(corners, np.full(len(corners), wall), edit.cage)
-            self.grid.merge(first)
+        if self.walls.gate_count + len(edit.retired_walls) > MOST_GATES:
+            raise ValueError(
+                f"the cage has been extended {MOST_GATES} times, more than walks can tell apart; make new coordinates"
+            )
+        if len(edit.retired_walls):
+            self._append(edit.swept_simplices, edit.swept_simplex_wall, edit.cage)
+            self.walls.retire(edit.retired_walls)
+            self.grid.rebuild()
+        else:
+            for wall in np.unique(edit.swept_simplex_wall).tolist():
+                corners = edit.swept_simplices[edit.swept_simplex_wall == wall]
+                first = self.walls.triangle_count
+                self._append(corners, np.full(len(corners), wall), edit.cage)
+                self.grid.merge(first)
+        self.faces_before = self.faces
         self.faces = build_face_tables(edit.cage, self.frame, quads=self.quads, device=self.device)
         change = self._change(edit)
         self.cage = edit.cage
@@ -124,6 +146,7 @@ class Domain:
             state: A state of this domain.
         """
         self.cage, self.faces, self._last = state.cage, state.faces, state.last
+        self.faces_before = state.faces
         self.walls.restore(state.walls)
         self.grid.restore(state.grid)
 
@@ -133,25 +156,29 @@ class Domain:
         self.walls.append(corners, walls, normals, two_sided)
 
     def _change(self, edit: CageEdit) -> DomainChange:
-        polygons = [self.frame.to_unit(polygon) for polygon in edit.swept]
-        normals = [edit.cage.walls[wall].normal for wall in edit.swept_wall]
+        polygons = [lifted(self.frame.to_unit(polygon)) for polygon in edit.swept]
+        normals = [lifted(edit.cage.walls[wall].normal) for wall in edit.swept_wall]
         along = [_directions(polygon, normal) for polygon, normal in zip(polygons, normals)]
-        pieces = bound_pieces(polygons, along, self.device)
         regrouped = _pieces_differ(edit.before, edit.cage)
         changed = np.zeros((len(edit.cage.walls), 2), dtype=bool)
         changed.reshape(-1)[np.asarray(edit.changed_keys, dtype=np.int64)] = True
         if regrouped:
             changed.reshape(-1)[_ambiguous_keys(edit.cage)] = True
         changed |= changed.any(axis=1, keepdims=True)
-        return DomainChange(pieces, changed.reshape(-1), regrouped)
+        changes = np.where(changed, np.uint8(CHANGED_KEY), np.uint8(UNCHANGED_KEY))
+        changes[edit.retired_walls] = np.uint8(RETIRED_KEY)
+        return DomainChange(polygons, along, changes.reshape(-1), regrouped)
 
 
 def _directions(polygon: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Directions along which a flat piece is thin: its normal, and across its longest edge. Shape (2, 3)."""
+    """Directions along which a flat piece is thin: its normal, and across its longest edge. Shape (2, 3).
+
+    A piece in 2D is one edge, with nothing across it but its normal: there it is that edge's own direction.
+    """
     edges = np.roll(polygon, -1, axis=0) - polygon
     longest = edges[np.argmax((edges**2).sum(axis=1))]
-    across = np.cross(normal, longest)
-    return np.stack([normal, across / max(np.linalg.norm(across), 1.0e-30)])
+    second = longest if len(polygon) == 2 else np.cross(normal, longest)
+    return np.stack([normal, second / max(np.linalg.norm(second), 1.0e-30)])
 
 
 def _pieces_differ(before: Cage, after: Cage) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 import warp as wp
 
 from ..cage import Cage
-from .frame import UnitFrame
+from .frame import UnitFrame, lifted
 
 wp.set_module_options({"enable_backward": False})
 
@@ -23,14 +23,16 @@ QUAD = wp.constant(1)
 """Mean value coordinates of a convex quad (paper, equation 4)."""
 NESTED = wp.constant(2)
 """A walk on the face (paper, section 5.1): slits, concave and many-sided faces, and quads on request."""
+SEGMENT = wp.constant(3)
+"""Linear, in 2D."""
 
 
 @wp.struct
 class FaceTables:
     """Faces of one cage, and the planes of its walls, in the unit frame.
 
-    The loop of face f is rows loop_start[f] to loop_start[f + 1] of ``loop_vertex`` (cage vertices) and
-    ``loop_point`` (in the wall's plane). The faces of key 2 * wall + side are rows key_start[key] to
+    The loop of face f is rows loop_start[f] to loop_start[f + 1] of ``loop_vertex`` (cage vertices) and ``loop_point``
+    (in the wall's plane; in 2D along its line). The faces of key 2 * wall + side are rows key_start[key] to
     key_start[key + 1] of ``key_face``.
     """
 
@@ -38,8 +40,9 @@ class FaceTables:
     loop_vertex: wp.array[wp.int32]
     loop_point: wp.array[wp.vec2]
     kind: wp.array[wp.int32]
+    nested_count: int
     orientation: wp.array[float]
-    piece: wp.array[wp.int32]
+    face_piece: wp.array[wp.int32]
     vertex_piece: wp.array[wp.int32]
     key_start: wp.array[wp.int32]
     key_face: wp.array[wp.int32]
@@ -47,6 +50,19 @@ class FaceTables:
     wall_axis_0: wp.array[wp.vec3]
     wall_axis_1: wp.array[wp.vec3]
     rest: wp.array[wp.vec3d]
+
+
+@wp.func
+def cross2(u: wp.vec2, v: wp.vec2) -> float:
+    """Third component of the cross product of two plane vectors."""
+    return u[0] * v[1] - u[1] * v[0]
+
+
+@wp.func
+def plane_point(tables: FaceTables, wall: int, x: wp.vec3) -> wp.vec2:
+    """Coordinates of a point in a wall's plane."""
+    offset = x - tables.wall_origin[wall]
+    return wp.vec2(wp.dot(tables.wall_axis_0[wall], offset), wp.dot(tables.wall_axis_1[wall], offset))
 
 
 def build_face_tables(cage: Cage, frame: UnitFrame, *, quads: str, device: wp.context.Device) -> FaceTables:
@@ -66,16 +82,21 @@ def build_face_tables(cage: Cage, frame: UnitFrame, *, quads: str, device: wp.co
     origin = np.array([frame.to_unit(wall.origin) for wall in cage.walls])
     axes = np.array([wall.axes for wall in cage.walls])
     local = np.einsum("rij,rj->ri", axes[wall_of_row], frame.to_unit(cage.vertices)[vertex] - origin[wall_of_row])
+    if cage.dimension == 2:
+        local, origin = np.pad(local, ((0, 0), (0, 1))), lifted(origin)
+        axes = np.pad(axes, ((0, 0), (0, 1), (0, 1)))  # the second axis is zero
     orientation = 1.0 - 2.0 * np.asarray(cage.face_side, dtype=np.float64)
     key = 2 * np.asarray(cage.face_wall) + np.asarray(cage.face_side)
     key_count = np.bincount(key, minlength=2 * len(cage.walls))
 
+    kinds = _kinds(local, start, orientation, quads=quads)
     tables = FaceTables()
+    tables.nested_count = int(np.count_nonzero(kinds == NESTED))
     integers = {
         "loop_start": start,
         "loop_vertex": vertex,
-        "kind": _kinds(local, start, orientation, quads=quads),
-        "piece": cage.face_piece,
+        "kind": kinds,
+        "face_piece": cage.face_piece,
         "vertex_piece": cage.vertex_piece,
         "key_start": np.concatenate([[0], np.cumsum(key_count)]),
         "key_face": np.argsort(key, kind="stable"),
@@ -87,7 +108,7 @@ def build_face_tables(cage: Cage, frame: UnitFrame, *, quads: str, device: wp.co
     tables.wall_origin = wp.array(origin.astype(np.float32), dtype=wp.vec3, device=device)
     tables.wall_axis_0 = wp.array(axes[:, 0].astype(np.float32), dtype=wp.vec3, device=device)
     tables.wall_axis_1 = wp.array(axes[:, 1].astype(np.float32), dtype=wp.vec3, device=device)
-    tables.rest = wp.array(frame.to_unit(cage.vertices), dtype=wp.vec3d, device=device)
+    tables.rest = wp.array(lifted(frame.to_unit(cage.vertices)), dtype=wp.vec3d, device=device)
     return tables
 
 
@@ -95,6 +116,7 @@ def _kinds(local: np.ndarray, start: np.ndarray, orientation: np.ndarray, *, qua
     """How each face interpolates: by its number of sides and, for quads, convexity."""
     length = np.diff(start)
     kinds = np.full(len(length), NESTED, dtype=np.int32)
+    kinds[length == 2] = SEGMENT
     kinds[length == 3] = TRIANGLE
     if quads == "mean_value":
         faces = np.flatnonzero(length == 4)
@@ -149,7 +171,7 @@ def face_of_landing(tables: FaceTables, key: int, x: wp.vec2, piece: int) -> int
     nearest = float(2.0e30)
     for row in range(first, last):
         face = tables.key_face[row]
-        if piece < 0 or tables.piece[face] == piece:
+        if piece < 0 or tables.face_piece[face] == piece:
             distance = distance_outside(tables, face, x)
             if distance < nearest:
                 best = face

@@ -21,20 +21,27 @@ class UnitFrame:
     Args:
         center: Centre of the cage's bounding box [m], shape (dimension,).
         half_side: Half of the box's longest side [m].
-        half_extents: Half of the box's sides in the unit frame, shape (dimension,).
     """
 
     center: np.ndarray
     half_side: float
-    half_extents: np.ndarray
 
     @classmethod
     def of(cls, vertices: np.ndarray) -> UnitFrame:
         """Build the frame of a cage's vertices [m], shape (n, dimension)."""
         low, high = vertices.min(axis=0), vertices.max(axis=0)
-        half_side = float((high - low).max()) / 2.0
-        return cls((low + high) / 2.0, half_side, (high - low) / (2.0 * half_side))
+        return cls((low + high) / 2.0, float((high - low).max()) / 2.0)
 
     def to_unit(self, points: np.ndarray) -> np.ndarray:
         """Map rest positions [m] to the unit frame, in float64."""
         return (np.asarray(points, dtype=np.float64) - self.center) / self.half_side
+
+    def to_space(self, points: np.ndarray) -> np.ndarray:
+        """Map rest positions [m] to the unit frame as float32 in space; those of 2D lie in the plane z = 0."""
+        return lifted(self.to_unit(points)).astype(np.float32)
+
+
+def lifted(vectors: np.ndarray) -> np.ndarray:
+    """Vectors with a third component, 0 for those of 2D; shape (..., 3)."""
+    missing = 3 - vectors.shape[-1]
+    return np.concatenate([vectors, np.zeros((*vectors.shape[:-1], missing))], axis=-1) if missing else vectors

@@ -4,7 +4,8 @@
 """The candidate grid: for each cell, every wall triangle that can be nearest to some point of the cell.
 
 A triangle w is a candidate of a cell with centre c and diagonal D when d(c, w) <= min_w' d(c, w') + D: for any q in
-the cell, |d(q, w) - d(c, w)| <= D / 2, for every w. So the query over the list returns bit for bit what the query
+the cell, |d(q, w) - d(c, w)| <= D / 2, for every w. Gates do not count in the minimum, since some walks ignore them.
+So the query over the list returns bit for bit what the query
 over all walls returns, medial axis included (the paper's grid, section 6.2, is not exact there). The grid is refined
 level by level, each cell choosing among its parent's candidates, and new walls are merged into the cells that they
 can reach.
@@ -16,7 +17,7 @@ import numpy as np
 import warp as wp
 
 from .launch import launch
-from .walls import Nearest, Walls, WallTriangles, closest_point_on_triangle, nearer, plane_distance
+from .walls import Walls, WallTriangles, closest_point_on_triangle, plane_distance
 
 wp.set_module_options({"enable_backward": False})
 
@@ -35,6 +36,7 @@ class GridCells:
 
     low: wp.vec3
     size: float
+    diagonal: float
     shape: wp.vec3i
     start: wp.array[wp.int32]
     items: wp.array[wp.int32]
@@ -60,15 +62,6 @@ def cell_of(cells: GridCells, x: wp.vec3) -> int:
 
 
 @wp.func
-def nearest_in_grid(triangles: WallTriangles, cells: GridCells, x: wp.vec3, best: Nearest) -> Nearest:
-    """The nearest wall triangle, by the cell's candidates, starting from a guess."""
-    cell = cell_of(cells, x)
-    for item in range(cells.start[cell], cells.start[cell + 1]):
-        best = nearer(triangles, cells.items[item], x, best)
-    return best
-
-
-@wp.func
 def _center_distance(triangles: WallTriangles, t: int, center: wp.vec3) -> float:
     return wp.length(center - closest_point_on_triangle(triangles, t, center))
 
@@ -89,8 +82,9 @@ def _measure_cells(
     last = parent.start[parent_cell + 1]
     best = float(1.0e30)
     for item in range(first, last):
-        best = wp.min(best, _center_distance(triangles, parent.items[item], center))
-    reach = best + cells.size * wp.sqrt(3.0) + _MARGIN
+        if triangles.gate[parent.items[item]] < 0:
+            best = wp.min(best, _center_distance(triangles, parent.items[item], center))
+    reach = best + cells.diagonal + _MARGIN
     count = int(0)
     for item in range(first, last):
         if _center_distance(triangles, parent.items[item], center) <= reach:
@@ -104,7 +98,7 @@ def _fill_cells(offset: int, triangles: WallTriangles, parent: GridCells, cells:
     cell = offset + wp.tid()
     center = cell_center(cells, cell)
     parent_cell = cell_of(parent, center)
-    reach = nearest[cell] + cells.size * wp.sqrt(3.0) + _MARGIN
+    reach = nearest[cell] + cells.diagonal + _MARGIN
     slot = cells.start[cell]
     for item in range(parent.start[parent_cell], parent.start[parent_cell + 1]):
         if _center_distance(triangles, parent.items[item], center) <= reach:
@@ -134,7 +128,7 @@ def _is_candidate(triangles: WallTriangles, t: int, wall: int, cells: GridCells,
     The triangles of one wall are all as far from a point as their plane is, so the nearest of them is the one that is
     nearest within the plane. The pieces of a long cut would crowd the cells beside it otherwise.
     """
-    diagonal = cells.size * wp.sqrt(3.0)
+    diagonal = cells.diagonal
     if _center_distance(triangles, t, center) > reach.nearest + diagonal + _MARGIN:
         return False
     return triangles.wall[t] != wall or _lateral_distance(triangles, t, center) <= reach.lateral + diagonal + _LATERAL
@@ -150,7 +144,7 @@ def _reach_of_new(
     reach.nearest = nearest
     reach.lateral = -1.0
     lateral = float(1.0e30)
-    farthest = nearest + cells.size * wp.sqrt(3.0) + _MARGIN
+    farthest = nearest + cells.diagonal + _MARGIN
     for t in range(first_new, triangles.count):
         if wp.abs(plane_distance(triangles, t, center)) <= farthest + _MARGIN:  # most cells are out of reach
             distance = _center_distance(triangles, t, center)
@@ -221,7 +215,7 @@ def _fill_merged(
 
 
 class CandidateGrid:
-    """Uniform grid of nearest-wall candidates over the unit frame's box.
+    """Uniform grid of nearest-wall candidates over the box of the walls.
 
     Args:
         walls: The walls to index; at least those of the cage.
@@ -237,6 +231,10 @@ class CandidateGrid:
     def byte_count(self) -> int:
         """Bytes on the device."""
         return 4 * (self.cells.start.size + self.cells.items.size + self._nearest.size)
+
+    def rebuild(self) -> None:
+        """Index all walls anew, over the box that they take now: after gates have opened a way out of the old one."""
+        self._build()
 
     def merge(self, first_new: int) -> None:
         """Add the triangles from ``first_new`` on, all of one wall, to the cells that they can reach."""
@@ -257,15 +255,14 @@ class CandidateGrid:
 
     def restore(self, state: tuple) -> None:
         """Forget the walls that were merged since a state."""
-        self.cells = state[0]
-        wp.copy(self._nearest, state[1])
+        self.cells, self._nearest = state[0], wp.clone(state[1])
 
     def _build(self) -> None:
         device = self.walls.device
-        half = self.walls.frame.half_extents
-        parent = _single_cell(half, self.walls.triangle_count, device)
+        box = [corner[: len(self.walls.frame.center)] for corner in self.walls.box()]
+        parent = _single_cell(box, self.walls.triangle_count, device)
         for resolution in _levels(self.resolution):
-            cells = _uniform_cells(half, resolution, device)
+            cells = _uniform_cells(box, resolution, device)
             cell_count = int(np.prod(list(cells.shape)))
             counts = wp.empty(cell_count, dtype=wp.int32, device=device)
             self._nearest = wp.empty(cell_count, dtype=float, device=device)
@@ -283,20 +280,26 @@ def _levels(resolution: int) -> list[int]:
     return levels
 
 
-def _uniform_cells(half_extents: np.ndarray, resolution: int, device: wp.context.Device) -> GridCells:
+def _uniform_cells(box: list[np.ndarray], resolution: int, device: wp.context.Device) -> GridCells:
+    dimension = len(box[0])
     pad = 1.0e-3
-    size = 2.0 * (1.0 + pad) / resolution
+    extents = box[1] - box[0] + 2.0 * pad
+    size = float(extents.max()) / resolution
+    low, shape = np.full(3, -0.5 * size), np.ones(3, dtype=int)  # of 2D: one layer around the plane z = 0
+    low[:dimension] = box[0] - pad
+    shape[:dimension] = np.maximum(1, np.ceil(extents / size - 1e-6))
     cells = GridCells()
-    cells.low = wp.vec3(*(-(half_extents + pad)).tolist())
+    cells.low = wp.vec3(*low.tolist())
     cells.size = size
-    cells.shape = wp.vec3i(*np.maximum(1, np.ceil(2.0 * (half_extents + pad) / size - 1e-9)).astype(int).tolist())
+    cells.diagonal = size * dimension**0.5
+    cells.shape = wp.vec3i(*shape.tolist())
     cells.start = wp.zeros(1, dtype=wp.int32, device=device)
     cells.items = wp.zeros(1, dtype=wp.int32, device=device)
     return cells
 
 
-def _single_cell(half_extents: np.ndarray, triangle_count: int, device: wp.context.Device) -> GridCells:
-    cells = _uniform_cells(half_extents, 1, device)
+def _single_cell(box: list[np.ndarray], triangle_count: int, device: wp.context.Device) -> GridCells:
+    cells = _uniform_cells(box, 1, device)
     cells.shape = wp.vec3i(1, 1, 1)
     cells.start = wp.array([0, triangle_count], dtype=wp.int32, device=device)
     cells.items = wp.array(np.arange(triangle_count, dtype=np.int32), device=device)
@@ -306,7 +309,7 @@ def _single_cell(half_extents: np.ndarray, triangle_count: int, device: wp.conte
 def _cells_like(cells: GridCells, counts: wp.array) -> GridCells:
     """The same cells with empty lists of the given lengths."""
     result = GridCells()
-    result.low, result.size, result.shape = cells.low, cells.size, cells.shape
+    result.low, result.size, result.diagonal, result.shape = cells.low, cells.size, cells.diagonal, cells.shape
     result.start = wp.zeros(counts.size + 1, dtype=wp.int32, device=counts.device)
     wp.utils.array_scan(counts, result.start[1:], inclusive=True)
     result.items = wp.empty(int(result.start[-1:].numpy()[0]), dtype=wp.int32, device=counts.device)

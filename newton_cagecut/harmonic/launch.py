@@ -47,7 +47,8 @@ def launch(
             wp.synchronize_device(device)
             progress(1.0)
         return
-    kernel.module.load(device)
+    # Loaded first, for the block size of CPU launches, so that it is compiled once and not by every thread.
+    kernel.module.load(device, block_dim=1)
     core_count = _core_count()
     size = max(smallest_chunk, -(-count // (core_count * _CHUNKS_PER_CORE)))
     starts = range(0, count, size)

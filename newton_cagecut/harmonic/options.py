@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .bounds import BOUNDS
+
 CORRECTIONS = ("harmonic", "affine", "none")
-BOUNDS = ("dop18",)
 DISTANCES = ("grid", "all")
 QUADS = ("mean_value", "harmonic")
 

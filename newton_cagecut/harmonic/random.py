@@ -15,6 +15,9 @@ import warp as wp
 NESTED_STREAM = wp.constant(wp.uint32(0x9E3779B9))
 """Added to the seed for the walks on a face, so that they share no number with the walks in the volume."""
 
+GATE_STREAM = wp.constant(wp.uint32(0x85EBCA6B))
+"""Added to the seed, times a gate's number and one, for the part of a walk behind that gate."""
+
 _UNIT = wp.constant(1.0 / 16777216.0)
 _TWO_PI = wp.constant(6.283185307179586)
 
@@ -63,3 +66,15 @@ def direction_on_circle(seed: wp.uint32, point: wp.uint32, walk: wp.uint32, step
     words = pcg4d(seed, point, walk, step)
     angle = _TWO_PI * unit_float(words[0])
     return wp.vec2(wp.cos(angle), wp.sin(angle))
+
+
+@wp.func
+def direction_in_plane(seed: wp.uint32, point: wp.uint32, walk: wp.uint32, step: wp.uint32) -> wp.vec3:
+    """Draw a uniform unit vector of the plane z = 0."""
+    direction = direction_on_circle(seed, point, walk, step)
+    return wp.vec3(direction[0], direction[1], 0.0)
+
+
+def make_direction(dimension: int) -> wp.Function:
+    """The function (seed, point, walk, step) -> uniform unit vector in a dimension; 2D is the plane z = 0."""
+    return direction_on_sphere if dimension == 3 else direction_in_plane

@@ -72,7 +72,7 @@ class CoordinatesSnapshot:
 
 def _arrays(walker: Walker) -> dict[str, wp.array]:
     """The arrays that edits write to, by name."""
-    arrays = {f"landing {name}": getattr(walker.landings, name) for name in LANDING_DTYPES}
+    arrays = {f"landing {name}": getattr(walker.landings, name) for name in LANDING_DTYPES[walker.domain.dimension]}
     arrays |= {f"point {name}": getattr(walker.points, name) for name in _POINT_ARRAYS}
     arrays |= {"bounds": walker.bounds, "weights": walker.weights, "gradients": walker.gradients}
     return arrays | {"degrees": walker.degrees}

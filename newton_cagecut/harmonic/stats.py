@@ -22,15 +22,17 @@ class UpdateStats:
         checked: Walks whose bounds were tested against the new walls.
         rewalked: Walks that were walked again.
         on_face: Walks whose landing was evaluated again on changed faces.
+        resumed: Walks that went on from their landings, where a face has moved outward.
         resolved_points: Points whose weights were resolved again.
         capped: Walks, of all, that the cap on steps stopped.
-        seconds: Time of each part [s]: "walls", "check", "rewalk", "on_face", "resolve".
+        seconds: Time of each part [s]: "walls", "check", "rewalk", "resume", "on_face", "resolve".
     """
 
     walk_count: int
     checked: int = 0
     rewalked: int = 0
     on_face: int = 0
+    resumed: int = 0
     resolved_points: int = 0
     capped: int = 0
     seconds: dict[str, float] = field(default_factory=dict)
@@ -38,7 +40,7 @@ class UpdateStats:
     @property
     def reused(self) -> int:
         """Walks that were kept as they were."""
-        return self.walk_count - self.rewalked - self.on_face
+        return self.walk_count - self.rewalked - self.on_face - self.resumed
 
     @property
     def total_seconds(self) -> float:

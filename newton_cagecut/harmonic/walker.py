@@ -10,14 +10,18 @@ from collections.abc import Callable
 import numpy as np
 import warp as wp
 
-from .bounds import QuantizedExtents
+from ..cage import CageEdit
+from .bounds import make_bounds
 from .compact import count_capped
 from .domain import Domain
-from .landing import CAPPED, LANDING_DTYPES, Landings, make_land_kernel
+from .land import make_land_kernel
+from .landing import CAPPED, LANDING_DTYPES, empty_landings
 from .launch import launch
 from .options import WalkOptions
 from .points import byte_count, empty_points
-from .resolve import FEATURE_COUNT, Features, Moments, make_resolve_kernel
+from .polynomials import make_polynomials
+from .regression import make_regression
+from .resolve import make_resolve_kernel
 from .stats import UpdateStats
 from .walk import make_walk_kernel
 
@@ -55,13 +59,14 @@ class Walker:
         device = domain.device
         self.points = empty_points(point_capacity, gradient_mask, device)
         self.degrees = wp.zeros(point_capacity, dtype=wp.int32, device=device)
-        self._rest = np.zeros((point_capacity, 3))
+        self._rest = np.zeros((point_capacity, domain.dimension))
         self.gradient_count = int(gradient_mask.sum())
         if point_capacity * options.walks >= 1 << 31:
             raise ValueError(f"{point_capacity} points x {options.walks} walks are 2^31 or more; lower either")
         kept = point_capacity * options.walks if cuttable else 0
-        self.landings = _empty_landings(kept, device)
-        self.bounds = wp.empty(kept, dtype=QuantizedExtents, device=device)
+        self.landings = self._empty_landings(kept)
+        self.bounds_kind = make_bounds(options.bounds, domain.dimension)
+        self.bounds = self.bounds_kind.empty_levels(kept, device)
         self._touched = wp.zeros(point_capacity, dtype=wp.uint8, device=device)
         self._make_weights(vertex_capacity or domain.cage.vertex_count)
 
@@ -71,6 +76,18 @@ class Walker:
         if capacity is not None and vertex_count > capacity:
             raise ValueError(
                 f"the cage has {vertex_count} vertices, room was reserved for {capacity}: raise vertex_capacity"
+            )
+
+    def require_inside(self, edit: CageEdit) -> None:
+        """Refuse an obstacle that covers points."""
+        if edit.cage.volume >= edit.before.volume or edit.wall >= 0:
+            return
+        inner = np.flatnonzero(self.points.key.numpy()[: self.point_count] < 0)
+        covered = inner[~edit.cage.contains(self._rest[inner])]
+        if len(covered):
+            raise ValueError(
+                f"the obstacle covers {len(covered)} of {self.point_count} points, such as point {covered[0]} at "
+                f"{self._rest[covered[0]].tolist()}; move the obstacle, or remove the points first"
             )
 
     def require_points(self, point_count: int) -> None:
@@ -94,7 +111,7 @@ class Walker:
         """Set points' rest positions [m] and keys; new points continue the count."""
         self.point_count = max(self.point_count, int(indices.max(initial=-1)) + 1)
         self._rest[indices] = points
-        _scatter(self.points.position, indices, self.domain.frame.to_unit(points).astype(np.float32))
+        _scatter(self.points.position, indices, self.domain.frame.to_space(points))
         _scatter(self.points.key, indices, keys)
         pieces = np.full(len(indices), -1, np.int32)
         inner = keys < 0
@@ -106,13 +123,18 @@ class Walker:
         inner = np.flatnonzero(self.points.key.numpy()[: self.point_count] < 0)
         _scatter(self.points.piece, inner, self.domain.pieces_of(self._rest[inner]))
 
+    def free_points(self, walls: np.ndarray) -> None:
+        """Points on walls that have retired are inside from now on."""
+        freed = np.flatnonzero(np.isin(self.points.key.numpy()[: self.point_count] // 2, walls))
+        self.place(freed, self._rest[freed], np.full(len(freed), -1, dtype=np.int32))
+
     def run_all(self, stats: UpdateStats, *, progress: Callable[[float], None] | None = None) -> None:
         """Walk, land and resolve every point, in batches where walks are not kept."""
         walks = self.options.walks
         stats.walk_count = stats.rewalked = self.point_count * walks
         batch = self.point_count if self.cuttable else min(self.point_count, max(1, _BATCH_WALKS // walks))
         if not self.cuttable:
-            self.landings = _empty_landings(batch * walks, self.domain.device)
+            self.landings = self._empty_landings(batch * walks)
         no_work = wp.zeros(0, dtype=wp.int32, device=self.domain.device)
         for first in range(0, self.point_count, max(batch, 1)):
             count = min(batch, self.point_count - first)
@@ -124,7 +146,7 @@ class Walker:
             self.land(no_work, stats, first_point=first, count=count * walks, part="rewalk")
             self.resolve(np.arange(first, first + count), stats, first_point=first)
         if not self.cuttable:
-            self.landings = _empty_landings(0, self.domain.device)
+            self.landings = self._empty_landings(0)
 
     def walk(
         self,
@@ -134,15 +156,27 @@ class Walker:
         first_point: int = 0,
         count: int | None = None,
         touched: wp.array | None = None,
+        resumed: bool = False,
         progress: Callable[[float], None] | None = None,
     ) -> None:
-        """Walk the walks listed in ``work``, or the first ``count`` where it is empty; mark points that it touched."""
-        kernel = make_walk_kernel(distance=self.domain.distance, bounded=self.cuttable)
+        """Walk the walks listed in ``work``, or the first ``count`` where it is empty; mark points that it touched.
+
+        Resumed ones go on from the gates on which they landed.
+        """
         options, domain = self.options, self.domain
+        kernel = make_walk_kernel(
+            dimension=domain.dimension,
+            distance=domain.distance,
+            bounded=self.cuttable,
+            bounds_kind=self.bounds_kind,
+            gated=domain.gated,
+            resumed=resumed,
+        )
         inputs = [work, options.walks, first_point * options.walks, wp.uint32(options.seed), self.points]
-        inputs += [domain.walls.data, domain.grid.cells, options.epsilon, options.max_steps]
+        inputs += [domain.walls.data, domain.grid.cells, domain.walls.gate_of_wall()]
+        inputs += [options.epsilon, options.max_steps]
         inputs += [self.landings, self.bounds, self._touched if touched is None else touched]
-        with stats.time("rewalk", domain.device):
+        with stats.time("resume" if resumed else "rewalk", domain.device):
             launch(kernel, work.size if count is None else count, inputs, device=domain.device, progress=progress)
 
     def land(
@@ -153,12 +187,16 @@ class Walker:
         first_point: int = 0,
         count: int | None = None,
         part: str = "rewalk",
+        touched: wp.array | None = None,
     ) -> None:
-        """Evaluate the landings of the walks in ``work`` on the faces as they are."""
-        kernel = make_land_kernel(nested=self.domain.has_nested_faces)
+        """Evaluate the landings of the walks in ``work`` on the faces as they are; mark points that it touched."""
         options, domain = self.options, self.domain
+        kernel = make_land_kernel(
+            dimension=domain.dimension, nested=domain.has_nested_faces, compare=touched is not None
+        )
         inputs = [work, options.walks, first_point * options.walks, wp.uint32(options.seed), self.points]
-        inputs += [domain.faces, self.landings, options.epsilon, options.max_steps]
+        inputs += [domain.faces_before, domain.faces, self.landings, options.epsilon, options.max_steps]
+        inputs += [self._touched if touched is None else touched]
         with stats.time(part, domain.device):
             launch(kernel, work.size if count is None else count, inputs, device=domain.device)
 
@@ -168,11 +206,13 @@ class Walker:
             return
         options, domain = self.options, self.domain
         vertex_count = domain.cage.vertex_count
-        kernel = make_resolve_kernel(correction=options.correction, gradients=self.gradient_count > 0)
-        slot_bytes = 8 * (FEATURE_COUNT + 3) * vertex_count
+        kernel = make_resolve_kernel(
+            dimension=domain.dimension, correction=options.correction, gradients=self.gradient_count > 0
+        )
+        slot_bytes = 8 * (make_polynomials(domain.dimension).count + 3) * vertex_count
         batch = max(1, min(len(points), _BATCH_BYTES // slot_bytes))
         with stats.time("resolve", domain.device):
-            moments = _empty_moments(batch, vertex_count, domain.device)
+            moments = self._empty_moments(batch)
             rows = wp.array(points.astype(np.int32), dtype=wp.int32, device=domain.device)
             for first in range(0, len(points), batch):
                 inputs = [first, rows, moments, options.walks, first_point, wp.uint32(options.seed), options.degree]
@@ -187,7 +227,7 @@ class Walker:
 
     def memory(self) -> dict[str, int]:
         """Bytes of each part on the device."""
-        landings = [getattr(self.landings, name) for name in LANDING_DTYPES]
+        landings = [getattr(self.landings, name) for name in LANDING_DTYPES[self.domain.dimension]]
         return {
             "weights": _bytes(self.weights),
             "gradients": _bytes(self.gradients),
@@ -198,25 +238,21 @@ class Walker:
             "grid": self.domain.grid.byte_count,
         }
 
+    def _empty_landings(self, count: int) -> object:
+        return empty_landings(self.domain.dimension, count, self.domain.device)
+
+    def _empty_moments(self, slots: int) -> object:
+        device, shape = self.domain.device, (slots, self.domain.cage.vertex_count)
+        moments = make_regression(self.domain.dimension).Moments()
+        moments.value = wp.empty(shape, dtype=make_polynomials(self.domain.dimension).Features, device=device)
+        moments.slope = wp.empty(shape, dtype=wp.vec3d, device=device)
+        return moments
+
     def _make_weights(self, vertex_capacity: int) -> None:
         self.vertex_capacity = vertex_capacity
         device = self.domain.device
         self.weights = wp.zeros((self.point_capacity, vertex_capacity), dtype=float, device=device)
         self.gradients = wp.zeros((self.gradient_count, vertex_capacity), dtype=wp.vec3, device=device)
-
-
-def _empty_landings(count: int, device: wp.context.Device) -> Landings:
-    landings = Landings()
-    for name, dtype in LANDING_DTYPES.items():
-        setattr(landings, name, wp.empty(count, dtype=dtype, device=device))
-    return landings
-
-
-def _empty_moments(slots: int, vertex_count: int, device: wp.context.Device) -> Moments:
-    moments = Moments()
-    moments.value = wp.empty((slots, vertex_count), dtype=Features, device=device)
-    moments.slope = wp.empty((slots, vertex_count), dtype=wp.vec3d, device=device)
-    return moments
 
 
 def _scatter(array: wp.array, indices: np.ndarray, values: np.ndarray) -> None:

@@ -1,10 +1,16 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Walls: the triangles that stop walks, append-only.
+"""Walls: the triangles, in 2D segments, that stop walks, append-only.
 
 The cage's faces are walls from the start; every swept piece of a cut is appended (design: "walls are append-only,
 faces change"). A triangle knows its wall; a wall is a plane with one side (a face of the cage) or two (a cut).
+
+A wall that an extending edit has removed stays on as a gate (paper, section 8: "extending operations (e.g., extrusions)
+can simply resume walks"): it limits a walk's spheres until the walk has come to it, and that walk ignores it from then
+on. So a walk stays a function of the walls and the seed.
+
+In 2D everything lies in the plane z = 0, and a segment is a triangle of which two corners are the same.
 """
 
 from __future__ import annotations
@@ -12,12 +18,12 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from .frame import UnitFrame
+from .frame import UnitFrame, lifted
 
 wp.set_module_options({"enable_backward": False})
 
-_TIE = wp.constant(1.00001)
-_TINY = wp.constant(1.0e-12)
+MOST_GATES = 31
+"""Gates that one set of walls may have: a walk keeps a bit for each."""
 
 
 @wp.struct
@@ -25,6 +31,7 @@ class WallTriangles:
     """Triangles in the unit frame, shape (triangle_count,) each.
 
     ``inward_k`` is the unit normal, in the plane, of the edge that starts at corner k, and points into the triangle.
+    ``gate`` is the number of the gate that the triangle belongs to, -1 for walls.
     """
 
     corner_0: wp.array[wp.vec3]
@@ -36,16 +43,8 @@ class WallTriangles:
     normal: wp.array[wp.vec3]
     wall: wp.array[wp.int32]
     two_sided: wp.array[wp.int32]
+    gate: wp.array[wp.int32]
     count: int
-
-
-@wp.struct
-class Nearest:
-    """The wall triangle nearest to a point: squared distance, triangle, closest point."""
-
-    distance_squared: float
-    triangle: int
-    point: wp.vec3
 
 
 @wp.func
@@ -113,48 +112,6 @@ def closest_point_on_triangle(triangles: WallTriangles, t: int, x: wp.vec3) -> w
     return closest_point(triangles, t, x, plane_distance(triangles, t, x), inward_distances(triangles, t, x))
 
 
-@wp.func
-def nearer(triangles: WallTriangles, t: int, x: wp.vec3, best: Nearest) -> Nearest:
-    """Keep the nearer of ``best`` and triangle ``t``; on a tie the lower index.
-
-    The distance from the plane, then the one across the edges, reject most triangles first, with a margin. Triangles
-    are offered in ascending order everywhere, so a list that leaves far ones out gives the same result, bit for bit.
-    """
-    reach = best.distance_squared * _TIE + _TINY
-    off = plane_distance(triangles, t, x)
-    if off * off > reach:
-        return best
-    inward = inward_distances(triangles, t, x)
-    outside = wp.min(wp.min(inward), 0.0)
-    if off * off + outside * outside > reach:
-        return best
-    point = closest_point(triangles, t, x, off, inward)
-    distance_squared = wp.length_sq(x - point)
-    if distance_squared < best.distance_squared or (distance_squared == best.distance_squared and t < best.triangle):
-        best.distance_squared = distance_squared
-        best.triangle = t
-        best.point = point
-    return best
-
-
-@wp.func
-def nearest_of_all(triangles: WallTriangles, x: wp.vec3, best: Nearest) -> Nearest:
-    """The nearest wall triangle, by all of them: the reference."""
-    for t in range(triangles.count):
-        best = nearer(triangles, t, x, best)
-    return best
-
-
-@wp.kernel(enable_backward=False)
-def measure_distance(offset: int, triangles: WallTriangles, points: wp.array[wp.vec3], distance: wp.array[float]):
-    """Distance of points to the nearest of all walls."""
-    i = offset + wp.tid()
-    nearest = Nearest()
-    nearest.distance_squared = 1.0e30
-    nearest = nearest_of_all(triangles, points[i], nearest)
-    distance[i] = wp.sqrt(nearest.distance_squared)
-
-
 class Walls:
     """The walls of one cage and of its cuts, on a device.
 
@@ -174,21 +131,50 @@ class Walls:
         """Append triangles and return their indices.
 
         Args:
-            corners: Rest positions [m], shape (t, 3, 3).
+            corners: Rest positions [m], shape (t, dimension, dimension).
             walls: Wall of each triangle, shape (t,).
-            normals: The wall's unit normal for each triangle, shape (t, 3).
+            normals: The wall's unit normal for each triangle, shape (t, dimension).
             two_sided: Whether walks land on both sides, shape (t,).
         """
         first = self.triangle_count
-        rows = _triangle_rows(self.frame.to_unit(corners), normals)
+        rows = _wall_rows(self.frame.to_unit(corners), normals)
         rows["wall"] = walls.astype(np.int32)
         rows["two_sided"] = two_sided.astype(np.int32)
+        rows["gate"] = np.full(len(corners), -1, dtype=np.int32)
         self._rows = {
             name: np.concatenate([self._rows[name], row]) if self._rows else row for name, row in rows.items()
         }
         self.triangle_count = first + len(corners)
         self._upload()
         return range(first, self.triangle_count)
+
+    @property
+    def gate_count(self) -> int:
+        """Number of gates."""
+        return int(self._rows["gate"].max()) + 1
+
+    def retire(self, walls: np.ndarray) -> None:
+        """Make gates of walls that bound the cage no longer.
+
+        Args:
+            walls: Their numbers, shape (wall_count,).
+        """
+        gate = self._rows["gate"].copy()
+        for number, wall in enumerate(walls.tolist(), start=self.gate_count):
+            gate[self._rows["wall"] == wall] = number
+        self._rows = {**self._rows, "gate": gate}
+        self._upload()
+
+    def gate_of_wall(self) -> wp.array:
+        """Number of the gate that each wall has become, -1 for none, shape (wall_count,)."""
+        gates = np.full(int(self._rows["wall"].max()) + 1, -1, dtype=np.int32)
+        gates[self._rows["wall"]] = self._rows["gate"]
+        return wp.array(gates, dtype=wp.int32, device=self.device)
+
+    def box(self) -> tuple[np.ndarray, np.ndarray]:
+        """Least and greatest coordinates of the triangles in the unit frame, shape (3,) each."""
+        corners = np.concatenate([self._rows[f"corner_{k}"] for k in range(3)])
+        return corners.min(axis=0), corners.max(axis=0)
 
     def state(self) -> tuple:
         """The walls as they are; appending replaces what this refers to, and never writes to it."""
@@ -212,18 +198,33 @@ class Walls:
         return sum(rows.nbytes for rows in self._rows.values())
 
 
-def _triangle_rows(corners: np.ndarray, normals: np.ndarray) -> dict[str, np.ndarray]:
-    """Corners, edge normals and normals in float32, from unit-frame corners (t, 3, 3) in float64.
-
-    Winding is made to agree with the wall's normal, so that the edge normals point inward.
-    """
-    area = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), normals)
-    corners = np.where((area < 0.0)[:, None, None], corners[:, ::-1], corners)
-    rows = {"normal": normals.astype(np.float32)}
+def _wall_rows(corners: np.ndarray, normals: np.ndarray) -> dict[str, np.ndarray]:
+    """Corners, edge normals and normals in float32, from unit-frame corners in float64."""
+    if corners.shape[1] == 2:
+        inward = _segment_ends(corners)
+        corners = lifted(corners[:, [0, 1, 0]])
+    else:
+        corners = _wound(corners, normals)
+        inward = [_unit(np.cross(normals, corners[:, (k + 1) % 3] - corners[:, k])) for k in range(3)]
+    rows = {"normal": lifted(normals).astype(np.float32)}
     for k in range(3):
-        edge = corners[:, (k + 1) % 3] - corners[:, k]
-        inward = np.cross(normals, edge)
-        length = np.linalg.norm(inward, axis=1, keepdims=True)
         rows[f"corner_{k}"] = corners[:, k].astype(np.float32)
-        rows[f"inward_{k}"] = (inward / np.where(length > 0.0, length, 1.0)).astype(np.float32)
+        rows[f"inward_{k}"] = inward[k].astype(np.float32)
     return rows
+
+
+def _segment_ends(corners: np.ndarray) -> list[np.ndarray]:
+    """Directions into segments from their ends, which bound them as edges bound a triangle."""
+    along = lifted(_unit(corners[:, 1] - corners[:, 0]))
+    return [np.zeros_like(along), -along, along]
+
+
+def _wound(corners: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Triangles of which the winding agrees with the wall's normal, so that edge normals point inward."""
+    area = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), normals)
+    return np.where((area < 0.0)[:, None, None], corners[:, ::-1], corners)
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors / np.where(length > 0.0, length, 1.0)
