@@ -13,7 +13,6 @@ from functools import cached_property
 
 import numpy as np
 
-
 _NO_VOLUME = 1e-12
 
 

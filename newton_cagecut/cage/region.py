@@ -64,7 +64,7 @@ class Region:
 
     @property
     def labels(self) -> np.ndarray:
-        """Labels behind and on the upper front: of nodes, where chords cross it, of vertices between, shape (count,)."""
+        """Labels behind and on the upper front: nodes, crossings of chords, vertices between, shape (count,)."""
         nodes = np.flatnonzero(self.swept)
         return np.concatenate([nodes, self._section.node_count + self.upper_chords, self.middle_labels])
 

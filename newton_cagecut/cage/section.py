@@ -222,8 +222,8 @@ class Section:
     def chord_bulges(self) -> np.ndarray:
         """Whether a chord gets a vertex on each side once it is open.
 
-        That is so beside a border that touches no face, and to tell a chord from its loop's only other chord: such loops
-        go around cuts of finite width that the plane crosses.
+        That is so beside a border that touches no face, and to tell a chord from its loop's only other chord: such
+        loops go around cuts of finite width that the plane crosses.
         """
         bulges = self.chord_hubs.copy()
         closed = np.flatnonzero(self.chord_loop >= 0)

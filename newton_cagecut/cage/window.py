@@ -153,7 +153,7 @@ class ClippedSection(Section):
 
     @cached_property
     def chord_hubs(self) -> np.ndarray:
-        """Whether a chord runs along the start from border to border, beside which a hub stands, shape (chord_count,)."""
+        """Whether a chord runs along the start from border to border, with a hub beside it, shape (chord_count,)."""
         on_face = np.zeros(self.node_count, dtype=bool)
         on_face[self.chord_node[self.chord_face >= 0]] = True
         return ~on_face[self.chord_node].any(axis=1)

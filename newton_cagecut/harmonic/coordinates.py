@@ -264,9 +264,7 @@ class HarmonicCoordinates:
         self._checked_keys(point_keys, count, lowest=0)
         return self.weights_at(points, point_keys, walks=walks)
 
-    def weights_at(
-        self, points: np.ndarray, point_keys: np.ndarray | None = None, *, walks: int = 1024
-    ) -> np.ndarray:
+    def weights_at(self, points: np.ndarray, point_keys: np.ndarray | None = None, *, walks: int = 1024) -> np.ndarray:
         """Weights of further points in the cage as it is, which are not kept.
 
         Args:

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Triangles of a surface that a cut splits or slits, and the caps of what it opens.
 
-Section 6.3 of the paper splits the triangles that the cut crosses. In each triangle the cut is one segment: it splits the
-triangle, slits it from an edge, or, where a knife ends inside it, slits it without meeting an edge.
+Section 6.3 of the paper splits the triangles that the cut crosses. In each triangle the cut is one segment: it splits
+the triangle, slits it from an edge, or, where a knife ends inside it, slits it without meeting an edge. What becomes of
+the triangle follows from that alone, whatever lengths are rounded to zero.
 """
 
 from __future__ import annotations
@@ -110,8 +111,8 @@ def _split_quads(polygons: np.ndarray, opening: Opening) -> np.ndarray:
 def _around_slit(opening: Opening, chord: int, slit: list[int]) -> np.ndarray:
     """The seven triangles around a slit that meets no edge of its triangle, shape (7, 3).
 
-    The cut's line has one corner on one side and two on the other; the one sees its side of the slit whole, the two each
-    the end that is nearer.
+    The cut's line has one corner on one side and two on the other; the one sees its side of the slit whole, the two
+    each the end that is nearer.
     """
     mesh, vertex = opening.section.mesh, opening.face_vertex
     leaving, coming = opening.section.arrive[opening.section.chord_slot[chord]]
