@@ -136,7 +136,10 @@ class Cage:
 
     @cached_property
     def component_piece(self) -> np.ndarray:
-        """Solid piece to which each component belongs, a cavity's to that around it, shape (component_count,)."""
+        """Solid piece to which each component belongs; cavities and inner cuts to that around them.
+
+        Shape (component_count,).
+        """
         return component_piece(self)
 
     @property
@@ -161,7 +164,10 @@ class Cage:
 
     @property
     def component_volumes(self) -> np.ndarray:
-        """Enclosed volume, in 2D area, of each component, negative for a cavity, shape (component_count,) [m^d]."""
+        """Enclosed volume, in 2D area, of each component, negative for a cavity, nothing for a cut wholly inside.
+
+        Shape (component_count,) [m^d].
+        """
         return self.mesh.component_volumes
 
     @property
@@ -262,7 +268,7 @@ class Cage:
             Piece of each point, -1 outside the cage, shape (point_count,).
         """
         number = self.winding_numbers(points)
-        volume = np.where((number > 0.5) & (self.component_volumes > 0.0), self.component_volumes, np.inf)
+        volume = np.where((number > 0.5) & self.mesh.component_outward, self.component_volumes, np.inf)
         return np.where(number.sum(axis=1) > 0.5, self.component_piece[volume.argmin(axis=1)], -1)
 
     def extrude(self, face: int, distance: float) -> CageEdit:
