@@ -126,7 +126,9 @@ def opened_characteristic(base: Cage, cage: Cage, wall: int) -> int:
     """Euler characteristic that opening a wall of a cut must leave.
 
     Each opened sheet adds twice its own characteristic (one, less one for each hole) less one for each stretch of its
-    border along which its two sides stay together. In 2D every loop is closed and has none.
+    border along which its two sides stay together, vertices inside the body not counted: those that both sides share
+    there lie between two such stretches, and those of one side are hubs, of which the edge is no bridge. In 2D every
+    loop is closed and has none.
     """
     if cage.dimension == 2:
         return 0
@@ -138,7 +140,10 @@ def opened_characteristic(base: Cage, cage: Cage, wall: int) -> int:
     fronts = np.count_nonzero(counts & on_wall[face[mesh.twin]] & (side[mesh.twin] == 1))
     elsewhere = np.zeros(cage.vertex_count, dtype=bool)
     elsewhere[mesh.face_vertex[~on_wall[face]]] = True
-    fronts -= np.count_nonzero(~elsewhere)
+    shared = np.isin(np.arange(cage.vertex_count), mesh.face_vertex[on_wall[face] & (side == 1)])
+    own = np.isin(np.arange(cage.vertex_count), mesh.face_vertex[counts])
+    fronts -= np.count_nonzero(~elsewhere & own & shared)
+    bridges -= np.count_nonzero(~elsewhere & own & ~shared)
     sheets = np.count_nonzero(on_wall & (cage.face_side == 0))
     return base.euler_characteristic + 2 * (sheets - bridges - fronts)
 
@@ -146,7 +151,8 @@ def opened_characteristic(base: Cage, cage: Cage, wall: int) -> int:
 def check_manifold(cage: Cage, volume: float, rtol: float = 1e-9, *, hollow: bool = False) -> None:
     """Assert what every edit must preserve; faces that were only nearly planar keep the volume only nearly.
 
-    Only where the cage may be hollow, components may be the boundaries of cavities.
+    Only where the cage may be hollow, components may be the boundaries of cavities, as they always may in 2D; sides of a
+    cut that lies wholly inside may always be.
     """
     if cage.dimension == 2:
         check_outline(cage, volume, rtol)
@@ -165,7 +171,10 @@ def check_manifold(cage: Cage, volume: float, rtol: float = 1e-9, *, hollow: boo
     assert euler % 2 == 0
     assert euler <= 2 * cage.component_count
     np.testing.assert_allclose(cage.component_volumes.sum(), volume, rtol=rtol)
-    assert ((cage.piece_volumes if hollow else cage.component_volumes) > 0.0).all()
+    assert (cage.piece_volumes > 0.0).all()
+    if not hollow:
+        inner = cage.component_volumes[~cage.mesh.component_outward]
+        np.testing.assert_allclose(inner, 0.0, atol=1e-12 * cage.diameter**3)
     normals = np.array([cage.walls[w].normal for w in cage.face_wall]) * (1 - 2 * cage.face_side)[:, None]
     assert (np.einsum("ij,ij->i", normals, cage.mesh.face_area_vector) > 0.0).all()
     area = np.zeros(cage.face_count)

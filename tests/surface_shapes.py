@@ -92,7 +92,7 @@ def check_caps(surface: Surface, plane, wall: int) -> None:
     cap = surface.triangle_cap == wall
     assert on_wall[surface.triangles[cap]].all()
     facing = mesh.face_area_vector[cap] @ plane.normal
-    np.testing.assert_allclose(facing[facing > 0].sum(), -facing[facing < 0].sum(), rtol=1e-9)
+    np.testing.assert_allclose(facing[facing > 0].sum(), -facing[facing < 0].sum(), rtol=1e-9, atol=1e-15)
     sides = surface.point_key[surface.triangles[cap]]
     front = (sides == 2 * wall).any(axis=1)
     assert facing[front].min(initial=0.0) > -1e-12

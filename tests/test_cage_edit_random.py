@@ -11,12 +11,17 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cage_shapes import SHAPES, box, check_manifold, opened_characteristic, prism, ring, tetrahedron
+from cage_shapes import SHAPES, box, check_manifold, opened_characteristic, prism, random_blade, tetrahedron
 from cut_sequences import crossings
 from extension_checks import check_edit
-from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
+from newton_cagecut.cage import Cage, CageEdit, Cut
+from plane_shapes import PLANES, outline, ring, square
 
-OBSTACLES = (box(), tetrahedron(), prism(ring(5, inner=0.5)))
+EVERY = SHAPES | PLANES
+OBSTACLES = {
+    2: (square(), outline(ring(7)), outline(ring(5, inner=0.5))),
+    3: (box(), tetrahedron(), prism(ring(5, inner=0.5))),
+}
 
 
 class _Player:
@@ -57,18 +62,16 @@ class _Player:
 
     def _insert(self) -> bool:
         low, high = self.cage.vertices.min(axis=0), self.cage.vertices.max(axis=0)
-        shape = OBSTACLES[self.rng.integers(len(OBSTACLES))]
+        shape = OBSTACLES[self.cage.dimension][self.rng.integers(3)]
         size = self.rng.choice([0.03, 0.1, 0.3]) * self.cage.diameter / shape.diameter
-        points = (shape.vertices - shape.vertices.mean(axis=0)) @ np.linalg.qr(self.rng.normal(size=(3, 3)))[0]
-        turned = np.linalg.det(points[1:4] - points[0]) * np.linalg.det(shape.vertices[1:4] - shape.vertices[0]) < 0.0
-        points[:, 0] *= -1.0 if turned else 1.0
-        obstacle = Cage(points * size + self.rng.uniform(low, high), shape.faces)
+        turn = np.linalg.qr(self.rng.normal(size=(self.cage.dimension, self.cage.dimension)))[0]
+        turn[0] *= np.linalg.det(turn)
+        points = size * (shape.vertices - shape.vertices.mean(axis=0)) @ turn
+        obstacle = Cage(points + self.rng.uniform(low, high), shape.faces)
         return self._carry_out(lambda: self.cage.insert(obstacle), -obstacle.volume)
 
     def _cut(self) -> bool:
-        low, high = self.cage.vertices.min(axis=0), self.cage.vertices.max(axis=0)
-        origin = low + (high - low) * self.rng.uniform(0.2, 0.8, 3)
-        self.cuts.append(Cut(self.cage, Blade(origin, *self.rng.normal(size=(2, 3)))))
+        self.cuts.append(Cut(self.cage, random_blade(self.rng, self.cage)))
         return self._advance(self.cuts[-1])
 
     def _resume(self) -> bool:
@@ -79,7 +82,7 @@ class _Player:
             try:
                 cut.resume(self.cage)
             except ValueError as error:
-                if "has grown across the front" in str(error) and {"extrude", "move_face"} & set(self.done):
+                if "cage has grown across the" in str(error) and {"extrude", "move_face"} & set(self.done):
                     return False
                 raise
         return self._advance(cut)
@@ -96,12 +99,12 @@ class _Player:
         return True
 
 
-@pytest.mark.parametrize("name", SHAPES)
-@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@pytest.mark.parametrize("name", EVERY)
+@settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.integers(0, 2**32 - 1))
 def test_edits_of_every_kind(name, seed):
     """Extended, obstructed and cut in any order, a cage stays a closed manifold of the right volume."""
-    player = _Player(SHAPES[name](), np.random.default_rng(seed))
+    player = _Player(EVERY[name](), np.random.default_rng(seed))
     for _ in range(8):
         player.step()
     assert crossings(player.cage) == 0

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from cage_shapes import SHAPES, box, check_manifold, opened_characteristic
@@ -81,10 +81,11 @@ def test_a_blade_that_starts_inside():
 def _knife(rng: np.random.Generator, cage: Cage) -> Blade:
     low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
     size = float(np.linalg.norm(high - low))
-    heel, tip = np.sort(rng.uniform(-0.5, 0.5, 2)) * size
-    window = {"width": [(heel, tip), (heel, np.inf), (-np.inf, tip)][rng.integers(3)]}
-    if rng.random() < 0.4:
-        window["start"] = rng.uniform(-0.4, 0.2) * size
+    reach = rng.choice([0.1, 0.5]) * size
+    heel, tip = np.sort(rng.uniform(-reach, reach, 2))
+    window = {"width": [(heel, tip), (heel, tip), (heel, np.inf), (-np.inf, tip)][rng.integers(4)]}
+    if rng.random() < 0.6:
+        window["start"] = rng.uniform(-reach, 0.2 * size)
     return Blade(low + (high - low) * rng.uniform(0.2, 0.8, 3), rng.normal(size=3), rng.normal(size=3), **window)
 
 
@@ -98,11 +99,7 @@ def test_random_knives(name, seed):
     volume = cage.volume
     for _ in range(3):
         blade = _knife(rng, cage)
-        try:
-            cut, one = Cut(cage, blade), Cut(cage, blade)
-        except ValueError:
-            assume(np.isfinite(blade.window).all())
-            continue
+        cut, one = Cut(cage, blade), Cut(cage, blade)
         fixed = cage.vertices
         for part in np.sort(rng.uniform(0.0, 1.1, 4)):
             edit = cut.advance(to=part * cut.length)
@@ -144,9 +141,7 @@ def test_plain_cuts_cross_what_knives_left():
 
 
 def test_refusals():
-    """A knife that touches nothing of the surface, turned ones, and widths that are none are refused."""
-    with pytest.raises(ValueError, match="starts inside the body"):
-        Cut(box(), Blade([0.5, 0.5, 0.6], [0, 1, 0], [0, 0, -1], width=0.2, start=0.0))
+    """Turned knives, and widths that are none, are refused."""
     with pytest.raises(ValueError, match="heel must lie before its tip"):
         Blade([0, 0, 0], [1, 0, 0], [0, 1, 0], width=(0.3, 0.1))
     with pytest.raises(TypeError, match="width must be a length"):

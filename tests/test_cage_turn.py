@@ -116,21 +116,24 @@ def test_random_turns(name, seed):
         cage = cut.cage
 
 
-def test_rewinding_turns():
+@pytest.mark.parametrize("name", ["star_prism", "star", "annulus"])
+def test_rewinding_turns(name):
     """Rewinding takes turns back: the same cages come again, the last turn's very base at its depth."""
-    cut = Cut(SHAPES["star_prism"](), Blade([0.0, 0.1, 0.5], [0, 0.1, 1], [1, 0.2, 0]))
+    base = EVERY[name]()
+    edge = ([0, 0.1, 1],)[: base.dimension - 2]
+    cut = Cut(base, Blade([0.0, 0.1, 0.5][: base.dimension], *edge, [1, 0.2, 0][: base.dimension]))
     known = [cut.advance(to=0.3).cage, cut.advance(to=0.6).cage]
     snapshot = cut.snapshot()
-    cut.turn([0.5, 1.0, 0.0])
+    cut.turn([0.5, 1.0, 0.0][: base.dimension])
     known.append(cut.advance(to=0.8).cage)
-    cut.turn([0.0, 1.0, 0.1])
+    cut.turn([0.0, 1.0, 0.1][: base.dimension])
     cut.advance(to=0.9)
     assert cut.rewind(0.8).faces == known[2].faces
     np.testing.assert_array_equal(cut.cage.vertices, known[2].vertices)
     assert cut.rewind(0.6) is known[1]
     assert cut.rewind(0.3).faces == known[0].faces
     assert cut.rewind(snapshot) is known[1]
-    cut.turn([0.5, 1.0, 0.0])
+    cut.turn([0.5, 1.0, 0.0][: base.dimension])
     assert cut.advance(to=0.8).cage.faces == known[2].faces
 
 

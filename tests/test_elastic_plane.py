@@ -169,7 +169,7 @@ def test_spin_is_kept_to_first_order():
 
 
 def test_solid_bodies_carry_nothing_for_the_plane():
-    """A solid body has no normal and launches no kernel for one."""
+    """A solid body has no normal, a plane one has."""
     body = Body(3)
     assert not body.system.is_plane
     assert body.system._normal is None

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from newton_cagecut.cage import boundary_distances
 from newton_cagecut.cage.inside import simplex_distances
 from newton_cagecut.elastic import sample_quadrature
 from newton_cagecut.elastic.quadrature import _dense_inside
+from plane_shapes import PLANES
 
 QUADS = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
 BOX_SIMPLICES = {
@@ -136,6 +138,17 @@ def test_sample_does_not_depend_on_place_and_size(cage):
     nearest = cKDTree(moved - 2.0**20).query(points, k=1)[0]
     assert cKDTree(moved).query(moved, k=2)[0][:, 1].min() > 0.6 * mean_spacing(cage, 60)
     np.testing.assert_allclose(nearest, 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", PLANES)
+def test_plane_cages_are_covered_piece_by_piece(name):
+    """Points lie inside concave, holed and nested plane cages, keep their margin, and share out each piece's area."""
+    cage = PLANES[name]()
+    points, areas = sample_quadrature(cage, 150, seed=4)
+    assert cage.contains(points).all()
+    assert boundary_distances(cage, points).min() > 0.25 * mean_spacing(cage, 150) * (1.0 - 1e-9)
+    shares = np.bincount(cage.piece_of(points), areas, minlength=cage.piece_count)
+    np.testing.assert_allclose(shares, cage.piece_volumes, rtol=0.05)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -211,6 +211,19 @@ def test_refusals():
         cut.turn([1, 0])
 
 
+def test_growing_across_the_front():
+    """A cut whose front stands between bodies of which one grows across it refuses to go on, and stays as it was."""
+    base = outline(rectangle((0, 0), (1, 1)), rectangle((3, 0), (4, 1)))
+    cut = Cut(base, Blade([0.0, 0.5], [1, 0]))
+    cage = cut.advance(to=2.0).cage
+    with pytest.raises(ValueError, match="begin a new cut where the cage has grown across the tip"):
+        cut.resume(cage.extrude(7, 1.5).cage)
+    assert cut.cage is cage
+    cut.resume(cage.extrude(7, 0.5).cage)
+    check_outline(cut.advance(to=9.0).cage, 2.5)
+    assert cut.cage.piece_count == 4
+
+
 def _carve(scale: float, shift: float) -> list[Cage]:
     """A bent cut and one across it, of a star of some size at some place."""
     plain = PLANES["star"]()

@@ -7,9 +7,11 @@ from __future__ import annotations
 import newton
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import newton_cagecut as cagecut
-from cage_shapes import SHAPES, box
+from cage_shapes import SHAPES, box, random_blade
 from newton_cagecut.cage import Blade, Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
 from newton_cagecut.surface import SurfaceCut
@@ -57,6 +59,27 @@ def test_rewound_cut_is_what_it_was(name):
     edit = cut.advance(to=0.9 * cut.length)
     assert edit.before is known[0.5]
     _assert_same_cage(edit.cage, known[0.9])
+
+
+@pytest.mark.parametrize("name", ["box", "star_prism", *PLANES])
+@settings(max_examples=5, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_random_rewinds(name, seed):
+    """A cut in an already cut cage, with random steps and turns, comes back to the last bit at every depth it had."""
+    rng, base = np.random.default_rng(seed), (SHAPES | PLANES)[name]()
+    first = Cut(base, random_blade(rng, base))
+    cut = Cut(first.advance(to=0.6 * first.length).cage, random_blade(rng, base))
+    known = [(0.0, cut.cage)]
+    for _ in range(5):
+        edit = cut.advance(to=cut.depth + rng.uniform(0.01, 0.4) * max(0.1, cut.length - cut.depth))
+        known.append((cut.depth, edit.cage))
+        if cut.complete:
+            break
+        if rng.random() < 0.5:
+            cut.turn(cut.plane.across + rng.uniform(-2.0, 2.0) * cut.plane.normal)
+    for depth, cage in reversed(known):
+        _assert_same_cage(cut.rewind(depth), cage)
+        assert cut.depth == depth
 
 
 def test_rewind_refusals():

@@ -13,7 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from . import extension, intersection, segment_checks, validation
+from . import extension, validation
+from .arguments import as_loops, as_vertices
 from .edit import CageEdit
 from .face_triangles import triangulate_faces
 from .obstacle import insert_obstacle
@@ -39,21 +40,21 @@ class Cage:
             TypeError: If the vertices are not numbers or the faces not sequences of integers.
             ValueError: If the cage is not what the class promises; the text names the culprit.
         """
-        positions = _as_vertices(vertices)
-        face_start, face_vertex = _as_loops(faces)
+        positions = as_vertices(vertices)
+        face_start, face_vertex = as_loops(faces)
         if not (np.isfinite(tolerance) and 0.0 < tolerance < 0.1):
             raise ValueError(f"tolerance must lie between 0 and 0.1, got {tolerance}")
         validation.check_loops(positions, face_start, face_vertex, simple=True)
         self.tolerance = float(tolerance)
         self.diameter = float(np.linalg.norm(positions.max(axis=0) - positions.min(axis=0)))
         self.mesh = PolygonMesh(positions, face_start, face_vertex)
-        self._check_boundary()
+        validation.check_boundary(self.mesh, self.length_tolerance)
         normals = self.mesh.face_area_vector / np.linalg.norm(self.mesh.face_area_vector, axis=1, keepdims=True)
         validation.check_planarity(self.mesh, normals, self.length_tolerance)
         self.walls: tuple[Wall, ...] = face_walls(positions, face_start, face_vertex, normals)
         self.face_wall = np.arange(self.face_count)
         self.face_side = np.zeros(self.face_count, dtype=np.int64)
-        self._check_crossings()
+        validation.check_crossings(self)
         self._freeze()
 
     @classmethod
@@ -135,7 +136,10 @@ class Cage:
 
     @cached_property
     def component_piece(self) -> np.ndarray:
-        """Solid piece to which each component belongs, a cavity's to that around it, shape (component_count,)."""
+        """Solid piece to which each component belongs; cavities and inner cuts to that around them.
+
+        Shape (component_count,).
+        """
         return component_piece(self)
 
     @property
@@ -160,7 +164,10 @@ class Cage:
 
     @property
     def component_volumes(self) -> np.ndarray:
-        """Enclosed volume, in 2D area, of each component, negative for a cavity, shape (component_count,) [m^d]."""
+        """Enclosed volume, in 2D area, of each component, negative for a cavity, nothing for a cut wholly inside.
+
+        Shape (component_count,) [m^d].
+        """
         return self.mesh.component_volumes
 
     @property
@@ -222,7 +229,7 @@ class Cage:
                 positive volume.
         """
         validation.check_loops(self.vertices, self.mesh.face_start, self.mesh.face_vertex, simple=False)
-        self._check_topology()
+        validation.check_topology(self.mesh)
         normals = np.array([wall.normal for wall in self.walls])[self.face_wall]
         validation.check_planarity(self.mesh, normals, self.length_tolerance)
         validation.check_volume(self.mesh)
@@ -261,7 +268,7 @@ class Cage:
             Piece of each point, -1 outside the cage, shape (point_count,).
         """
         number = self.winding_numbers(points)
-        volume = np.where((number > 0.5) & (self.component_volumes > 0.0), self.component_volumes, np.inf)
+        volume = np.where((number > 0.5) & self.mesh.component_outward, self.component_volumes, np.inf)
         return np.where(number.sum(axis=1) > 0.5, self.component_piece[volume.argmin(axis=1)], -1)
 
     def extrude(self, face: int, distance: float) -> CageEdit:
@@ -310,45 +317,3 @@ class Cage:
             ValueError: If the obstacle is not strictly inside the body; the text names the culprit.
         """
         return insert_obstacle(self, obstacle)
-
-    def _check_topology(self) -> None:
-        if self.dimension == 2:
-            segment_checks.check_closed(self.mesh)
-        else:
-            validation.check_topology(self.mesh)
-
-    def _check_boundary(self) -> None:
-        if self.diameter == 0.0:
-            raise ValueError("all vertices of the cage coincide")
-        self._check_topology()
-        validation.check_areas(self.mesh, self.length_tolerance)
-        if self.dimension == 2:
-            segment_checks.check_crossings(self.mesh, self.length_tolerance)
-        validation.check_volume(self.mesh)
-
-    def _check_crossings(self) -> None:
-        if self.dimension == 3:
-            intersection.check_simple_faces(self.mesh, self.corner_coordinates, self.length_tolerance)
-            intersection.check_face_pairs(self.mesh, self.triangles, self.triangle_face, self.length_tolerance)
-        intersection.check_nesting(self.vertices, self.vertex_component, self.component_volumes, self.winding_numbers)
-
-
-def _as_vertices(vertices: np.ndarray) -> np.ndarray:
-    try:
-        positions = np.array(vertices, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise TypeError(f"vertices must be numbers of shape (vertex_count, 3) or (vertex_count, 2): {error}") from None
-    if positions.ndim != 2 or positions.shape[1] not in (2, 3):
-        raise ValueError(f"vertices must have shape (vertex_count, 3), or (vertex_count, 2), got {positions.shape}")
-    return positions
-
-
-def _as_loops(faces: Sequence[Sequence[int]]) -> tuple[np.ndarray, np.ndarray]:
-    """The faces as flat arrays: starts and vertex ids."""
-    loops = [np.asarray(loop) for loop in faces]
-    for i, loop in enumerate(loops):
-        if loop.ndim != 1 or (len(loop) and not np.issubdtype(loop.dtype, np.integer)):
-            raise TypeError(f"face {i} of the cage must be a sequence of integers, got {faces[i]!r}")
-    face_start = np.concatenate([[0], np.cumsum([len(loop) for loop in loops], dtype=np.int64)]).astype(np.int64)
-    face_vertex = np.concatenate([*loops, np.empty(0, dtype=np.int64)]).astype(np.int64)
-    return face_start, face_vertex

@@ -99,6 +99,11 @@ class Cut:
         return self._strip.wall
 
     @property
+    def window(self) -> tuple[float, float, float] | None:
+        """Heel, tip and start of a knife where they are in the plane, moved off the section's nodes; else None [m]."""
+        return self.section.window
+
+    @property
     def section(self) -> Section:
         """The present plane's section."""
         return self._strip.section

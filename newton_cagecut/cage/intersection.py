@@ -39,7 +39,7 @@ def check_simple_faces(mesh: PolygonMesh, corner: np.ndarray, tolerance: float) 
         step = max(1, _CHUNK // len(i))
         for begin in range(0, len(faces), step):
             block = slice(begin, begin + step)
-            meet = segments_meet(start[block, i], end[block, i], start[block, j], end[block, j], tolerance)
+            meet = _segments_meet(start[block, i], end[block, i], start[block, j], end[block, j], tolerance)
             bad, pair = np.nonzero(meet)
             if len(bad):
                 face = faces[begin + bad[0]]
@@ -50,16 +50,8 @@ def check_simple_faces(mesh: PolygonMesh, corner: np.ndarray, tolerance: float) 
                 )
 
 
-def segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, tolerance: float) -> np.ndarray:
-    """Whether closed segments a-b and c-d in the plane cross or touch within the tolerance, shape (...,).
-
-    Args:
-        a: Starts of the first segments, shape (..., 2) [m].
-        b: Ends of the first segments, shape (..., 2) [m].
-        c: Starts of the second segments, shape (..., 2) [m].
-        d: Ends of the second segments, shape (..., 2) [m].
-        tolerance: Length below which two things coincide [m].
-    """
+def _segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, tolerance: float) -> np.ndarray:
+    """Whether closed segments a-b and c-d come within the tolerance by crossing, shape (...,)."""
 
     def side(p, q, r):
         u, v = q - p, r - p

@@ -99,7 +99,8 @@ class LineSection(Section):
                 raise ValueError(
                     "the section does not close at the tip of the cut before it: the line leaves the piece of vertex "
                     f"{self.mesh.face_vertex[self.node_half_edge[mine[0]]]} {np.count_nonzero(~enters)} times and "
-                    f"enters it {np.count_nonzero(enters)} times; move the blade a little"
+                    f"enters it {np.count_nonzero(enters)} times; move the blade a little, or begin a new cut where "
+                    "the cage has grown across the tip"
                 )
             pairs.append(mine[np.array(alternate(along[mine], enters))])
         chords = np.concatenate(pairs)

@@ -19,6 +19,8 @@ from .wall import face_walls
 if TYPE_CHECKING:
     from .cage import Cage
 
+_LARGEST_TOLERANCE = 0.1
+
 
 def insert_obstacle(cage: Cage, obstacle: Cage) -> CageEdit:
     """Take the room of an obstacle from a cage.
@@ -68,14 +70,18 @@ def _as_solid(cage: Cage, obstacle: Cage) -> Cage:
     for face, wall in enumerate(obstacle.face_wall.tolist()):
         if obstacle.walls[wall].two_sided:
             raise ValueError(f"face {face} of the obstacle is a side of a cut; put in a cage that has not been cut")
-    try:
-        return type(cage)(
-            obstacle.vertices, obstacle.faces, tolerance=cage.length_tolerance / max(obstacle.diameter, 1e-300)
+    tolerance = cage.length_tolerance / obstacle.diameter
+    if tolerance >= _LARGEST_TOLERANCE:
+        raise ValueError(
+            f"the obstacle is {obstacle.diameter:.3g} m across, too small for a cage with a tolerance of "
+            f"{cage.length_tolerance:.3g} m; make it larger or leave it out"
         )
+    try:
+        return type(cage)(obstacle.vertices, obstacle.faces, tolerance=tolerance)
     except ValueError as error:
         raise ValueError(
-            f"the obstacle is not a cage within the tolerance of {cage.length_tolerance:.3g} m of the one around it "
-            f"(its own text: {error})"
+            f"the obstacle, checked as a cage with the tolerance of the one around it, {cage.length_tolerance:.3g} m: "
+            f"{error}"
         ) from None
 
 

@@ -70,8 +70,12 @@ class Opening:
 
     def created_positions(self) -> np.ndarray:
         """Positions of the created vertices, shape (created_count, dimension) [m]."""
-        tips = self.region.position[self.section.node_count + self.tip_chords]
-        return self.created_values(self.section.node_position, tips)
+        section, numbering, region = self.section, self.numbering, self.region
+        tips = region.position[section.node_count + self.tip_chords]
+        positions = self.created_values(section.node_position, tips)
+        for ids in (numbering.middle_plus[region.middles], numbering.middle_minus[region.middles]):
+            positions[ids - section.mesh.vertex_count] = region.position[region.middle_labels]
+        return positions
 
     def side_vertices(self) -> tuple[np.ndarray, np.ndarray]:
         """Vertices of the region's labels on the negative and on the positive side, shapes (label_count,)."""
@@ -82,10 +86,7 @@ class Opening:
         )
 
     def _hops(self) -> dict[int, tuple[tuple[int, ...], int]]:
-        """For each half-edge with an open crossing: vertices to insert and the half-edge with which to go on.
-
-        Slits that meet no edge of their face are kept in ``self._slits``.
-        """
+        """For each half-edge with an open crossing: vertices to insert and the half-edge with which to go on."""
         section = self.section
         touched = np.flatnonzero(self._open_ends.any(axis=1))
         touched = touched[section.chord_face[touched] >= 0]
@@ -98,7 +99,9 @@ class Opening:
         state = np.where(self._open_ends[touched], np.where(pinned, _PINNED, _OPEN), _SHUT).tolist()
         middles = set(self.region.middles.tolist())
         hops: dict[int, tuple[tuple[int, ...], int]] = {}
-        self._slits: list[tuple[int, list[int]]] = []
+        self.slits: list[tuple[int, list[int]]] = []
+        """Chords along which slits meet no edge of their face, and the vertices of each: at the chord's start, on the
+        positive side, at its end, on the negative side."""
         for chord, h, after, p, m, tip, ends in zip(touched.tolist(), *columns, tips, state, strict=True):
             above, below = (), ()
             if chord in middles:
@@ -113,7 +116,7 @@ class Opening:
             elif ends[1] == _OPEN:
                 hops[h[1]] = ((m[1], *below, last[0], *above, p[1]), after[1])
             else:
-                self._slits.append((chord, [last[0], *above, last[1], *below]))
+                self.slits.append((chord, [last[0], *above, last[1], *below]))
         return hops
 
     def _walk_faces(self) -> None:
@@ -162,22 +165,16 @@ class Opening:
             if h in place:
                 place[corner] = place[h]
         self._place_extra(extra, place)
-        for chord, slit in self._slits:
+        for chord, slit in self.slits:
             self._join_slit(int(section.chord_face[chord]), slit)
 
     def _join_slit(self, face: int, slit: list[int]) -> None:
         """Bridge a slit that meets no edge of its face to the loop around it."""
-        mesh = self.section.mesh
         row = int(np.searchsorted(self.faces, face))
         extra = [i for i, owner in enumerate(self.extra_face) if owner == face]
         loops = [self.first_loops[row], *(self.extra_loops[i] for i in extra)]
-        normal = mesh.face_area_vector[face]
-        first = mesh.vertices[mesh.face_vertex[mesh.face_start[face]]]
-        axis = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
-        axis /= np.linalg.norm(axis)
-        axes = np.stack([axis, np.cross(normal / np.linalg.norm(normal), axis)])
-        flat = [(self._position_of(loop) - first) @ axes.T for loop in loops]
-        hole = (self._position_of(slit) - first) @ axes.T
+        flat = [self._face_coordinates(face, loop) for loop in loops]
+        hole = self._face_coordinates(face, slit)
         inside = [k for k, points in enumerate(flat) if contains_point(points, hole[1])]
         k = inside[0] if inside else 0
         size = len(loops[k])
@@ -189,13 +186,30 @@ class Opening:
         else:
             self.extra_loops[extra[k - 1]] = loop
 
-    def _position_of(self, vertices: list[int]) -> np.ndarray:
+    def _face_coordinates(self, face: int, vertices: list[int]) -> np.ndarray:
+        """Coordinates of vertices in the plane of a face, in which it is counterclockwise, shape (count, 2) [m]."""
+        mesh = self.section.mesh
+        normal = mesh.face_area_vector[face]
+        axis = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
+        axis /= np.linalg.norm(axis)
+        axes = np.stack([axis, np.cross(normal / np.linalg.norm(normal), axis)])
+        return (self.positions(vertices) - mesh.vertices[mesh.face_vertex[mesh.face_start[face]]]) @ axes.T
+
+    def positions(self, vertices: np.ndarray | list[int]) -> np.ndarray:
+        """Positions of vertices, old or created [m].
+
+        Args:
+            vertices: Vertices, of any shape.
+
+        Returns:
+            Positions, shape (..., 3).
+        """
         old = self.section.mesh.vertices
-        ids = np.array(vertices)
+        ids = np.asarray(vertices)
         if self._positions is None:
             self._positions = self.created_positions()
+        positions = np.empty((*ids.shape, 3))
         below = ids < len(old)
-        positions = np.empty((len(ids), 3))
         positions[below] = old[ids[below]]
         positions[~below] = self._positions[ids[~below] - len(old)]
         return positions

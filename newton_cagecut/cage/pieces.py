@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class CagePiece:
-    """One solid piece of a cage: a connected component, with those around cavities in it."""
+    """One solid piece of a cage: a connected component, with those around cavities and of cuts wholly inside it."""
 
     vertices: np.ndarray
     """Ids of its vertices, ascending, shape (vertex_count,)."""
@@ -36,12 +36,13 @@ def component_piece(cage: Cage) -> np.ndarray:
     """
     volumes = cage.component_volumes
     owner = np.arange(len(volumes))
-    cavities = np.flatnonzero(volumes < 0.0)
-    if len(cavities):
-        first = np.unique(cage.vertex_component, return_index=True)[1][cavities]
+    outward = cage.mesh.component_outward
+    inner = np.flatnonzero(~outward)
+    if len(inner):
+        first = np.unique(cage.vertex_component, return_index=True)[1][inner]
         number = cage.winding_numbers(cage.vertices[first])
-        around = np.where((number > 0.5) & (volumes > 0.0), volumes, np.inf)
-        owner[cavities] = around.argmin(axis=1)
+        around = np.where((number > 0.5) & outward, volumes, np.inf)
+        owner[inner] = around.argmin(axis=1)
     return np.unique(owner, return_inverse=True)[1].reshape(-1)
 
 

@@ -13,6 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
+_NO_VOLUME = 1e-12
+
 
 class PolygonMesh:
     """Polygons over shared vertices, with their half-edges.
@@ -169,6 +171,15 @@ class PolygonMesh:
     def component_volumes(self) -> np.ndarray:
         """Enclosed volume, in 2D area, of each component, shape (component_count,) [m^d]."""
         return np.bincount(self.face_component, weights=self.face_volume, minlength=self.component_count)
+
+    @cached_property
+    def component_outward(self) -> np.ndarray:
+        """Whether each component encloses a volume from outside, shape (component_count,).
+
+        Cavities do not, nor do the two coincident sides of a cut that lies wholly inside.
+        """
+        bulk = np.bincount(self.face_component, weights=np.abs(self.face_volume), minlength=self.component_count)
+        return self.component_volumes > _NO_VOLUME * bulk
 
     @cached_property
     def fan(self) -> np.ndarray:

@@ -21,7 +21,8 @@ class Region:
     """The part of a section with ``lower < s <= upper``.
 
     Labels: node ``i`` is ``i``; where chord ``c`` crosses the upper front is ``node_count + c``; where it crosses the
-    lower front is ``node_count + chord_count + c``; a vertex between its ends is ``node_count + 2 * chord_count + c``.
+    lower front is ``node_count + chord_count + c``; a vertex between its ends, or its hub, is
+    ``node_count + 2 * chord_count + c``. A loop walks to a hub and back.
     """
 
     def __init__(self, section: Section, upper: float, lower: float = -np.inf, *, middles: np.ndarray | None = None):
@@ -33,7 +34,7 @@ class Region:
             lower: Coordinate s of an earlier front [m].
             middles: Chords that may have a vertex between their ends; None for none.
         """
-        self._section = section
+        self._section, self._upper = section, upper
         s = section.node_coordinates[:, 1]
         self.swept = s <= upper
         """Nodes that the upper front has reached, shape (node_count,)."""
@@ -57,7 +58,15 @@ class Region:
                 self.position[shift + which], self.coordinates[shift + which] = section.chord_points(front, which)
 
         self.middles = self._place_middles(np.zeros(0, dtype=np.int64) if middles is None else middles)
-        """Chords that have a vertex between their ends, shape (middle_count,)."""
+        """Chords that have a vertex between their ends or a hub, shape (middle_count,)."""
+        self.middle_labels = nodes + 2 * chords + self.middles
+        """Labels of those, shape (middle_count,)."""
+
+    @property
+    def labels(self) -> np.ndarray:
+        """Labels behind and on the upper front: nodes, crossings of chords, vertices between, shape (count,)."""
+        nodes = np.flatnonzero(self.swept)
+        return np.concatenate([nodes, self._section.node_count + self.upper_chords, self.middle_labels])
 
     def _place_middles(self, chords: np.ndarray) -> np.ndarray:
         """Put vertices halfway along what is open of chords: of slits from their begin on, of borders at their end."""
@@ -68,7 +77,18 @@ class Region:
         end = np.where(self.swept[high], high, nodes + chords)
         for values in (self.position, self.coordinates):
             values[nodes + 2 * count + chords] = 0.5 * (values[low] + values[end])
+        self._move_hubs(chords[section.chord_hubs[chords]])
         return chords
+
+    def _move_hubs(self, chords: np.ndarray) -> None:
+        """Move hubs off the border, halfway to the next node or to the front, so that nothing is in between."""
+        section, shift = self._section, self._section.node_count + 2 * self._section.chord_count
+        s = section.node_coordinates[:, 1]
+        for chord in chords.tolist():
+            border = s[section.chord_node[chord, 0]]
+            step = 0.5 * (min(self._upper, s[s > border].min(initial=np.inf)) - border)
+            self.position[shift + chord] += step * section.plane.direction
+            self.coordinates[shift + chord, 1] += step
 
     def polygons(self) -> list[list[int]]:
         """The region as polygons without holes, counterclockwise about the plane's normal, as loops of labels.
@@ -125,6 +145,7 @@ class Region:
         state = np.where(self.reached, 0, np.where(self._done, -1, 1)).tolist()
         todo = active.tolist()
         middles, middle_shift = set(self.middles.tolist()), section.node_count + 2 * section.chord_count
+        hubs = set(np.flatnonzero(section.chord_hubs).tolist())
         start, end, following = start.tolist(), end.tolist(), section.chord_next.tolist()
         shift = {1: section.node_count, -1: section.node_count + section.chord_count}
         loops = []
@@ -135,7 +156,7 @@ class Region:
                 side = state[start[chord]]
                 loop.append(shift[side] + chord if side else start[chord])
                 if chord in middles:
-                    loop.append(middle_shift + chord)
+                    loop += [middle_shift + chord, loop[-1]] if chord in hubs else [middle_shift + chord]
                 side = state[end[chord]]
                 if side:
                     loop.append(shift[side] + chord)

@@ -25,6 +25,9 @@ class Section:
     With a hinge, only what lies at ``s > 0`` counts, and the section begins at the hinge's vertices.
     """
 
+    window: tuple[float, float, float] | None = None
+    """Heel, tip and start of a knife where they are, off the nodes; None for a blade without [m]."""
+
     def __init__(
         self,
         mesh: PolygonMesh,
@@ -211,12 +214,18 @@ class Section:
         return np.zeros(self.chord_count, dtype=bool)
 
     @cached_property
-    def chord_bulges(self) -> np.ndarray:
-        """Whether a chord gets a vertex on each side once it is open, to tell it from its loop's only other chord.
+    def chord_hubs(self) -> np.ndarray:
+        """Whether a chord's vertices on each side stand off it, in the opened faces, shape (chord_count,)."""
+        return np.zeros(self.chord_count, dtype=bool)
 
-        Such loops go around cuts of finite width that the plane crosses.
+    @cached_property
+    def chord_bulges(self) -> np.ndarray:
+        """Whether a chord gets a vertex on each side once it is open.
+
+        That is so beside a border that touches no face, and to tell a chord from its loop's only other chord: such
+        loops go around cuts of finite width that the plane crosses.
         """
-        bulges = np.zeros(self.chord_count, dtype=bool)
+        bulges = self.chord_hubs.copy()
         closed = np.flatnonzero(self.chord_loop >= 0)
         loops, first, count = np.unique(self.chord_loop[closed], return_index=True, return_counts=True)
         pairs = closed[first[count == 2]]

@@ -9,10 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .intersection import segments_meet
+from .intersection import edge_distances, near_pairs
 from .polygon_mesh import PolygonMesh
-
-_CHUNK = 1 << 18
 
 
 def check_closed(mesh: PolygonMesh) -> None:
@@ -60,36 +58,21 @@ def check_crossings(mesh: PolygonMesh, tolerance: float) -> None:
     Raises:
         ValueError: If two segments meet.
     """
-    start, end = mesh.vertices[mesh.face_vertex[0::2]], mesh.vertices[mesh.face_vertex[1::2]]
+    ends = mesh.vertices[mesh.face_vertex].reshape(-1, 2, 2)
     follower = np.empty(mesh.face_count, dtype=np.int64)
     follower[np.argsort(mesh.face_vertex[1::2])] = np.argsort(mesh.face_vertex[0::2])
-    _check_folds(mesh, start, end, follower, tolerance)
-    step = max(1, _CHUNK // mesh.face_count)
-    for begin in range(0, mesh.face_count, step):
-        one = np.arange(begin, min(begin + step, mesh.face_count))
-        later = one[:, None] < np.arange(mesh.face_count)
-        i, j = np.nonzero(later & _boxes_meet(start, end, one, tolerance))
-        i = one[i]
-        apart = (follower[i] != j) & (follower[j] != i)
-        i, j = i[apart], j[apart]
-        meet = np.flatnonzero(segments_meet(start[i], end[i], start[j], end[j], tolerance))
+    _check_folds(mesh, ends[:, 1] - ends[:, 0], follower, tolerance)
+    for one, other in near_pairs(ends, ends, tolerance):
+        apart = (one < other) & (follower[one] != other) & (follower[other] != one)
+        one, other = one[apart], other[apart]
+        meet = np.flatnonzero(edge_distances(ends[one], ends[other]) <= tolerance)
         if len(meet):
-            _refuse(mesh, int(i[meet[0]]), int(j[meet[0]]), "meet; move the vertices apart")
+            _refuse(mesh, int(one[meet[0]]), int(other[meet[0]]), "meet; move the vertices apart")
 
 
-def _boxes_meet(start: np.ndarray, end: np.ndarray, which: np.ndarray, tolerance: float) -> np.ndarray:
-    """Whether the bounding boxes of some segments come within the tolerance of those of all, shape (count, all)."""
-    low, high = np.minimum(start, end), np.maximum(start, end) + tolerance
-    meet = np.ones((len(which), len(start)), dtype=bool)
-    for axis in range(2):
-        meet &= low[which, axis, None] <= high[:, axis]
-        meet &= low[:, axis] <= high[which, axis, None]
-    return meet
-
-
-def _check_folds(mesh: PolygonMesh, start: np.ndarray, end: np.ndarray, follower: np.ndarray, tolerance: float) -> None:
+def _check_folds(mesh: PolygonMesh, out: np.ndarray, follower: np.ndarray, tolerance: float) -> None:
     """Check that no segment runs back along the one before it."""
-    out, onward = end - start, (end - start)[follower]
+    onward = out[follower]
     turn = out[:, 0] * onward[:, 1] - out[:, 1] * onward[:, 0]
     longer = np.maximum(np.hypot(*out.T), np.hypot(*onward.T))
     back = np.flatnonzero((np.abs(turn) <= tolerance * longer) & ((out * onward).sum(axis=1) < 0.0))

@@ -64,7 +64,7 @@ class Strip:
             window: Heel, tip and start of the blade, which bound coordinates a, a and s [m].
 
         Raises:
-            ValueError: If the window lies inside the body, or the section does not close at the hinge.
+            ValueError: If the section does not close at the hinge.
         """
         self.base = base
         self.plane = plane
@@ -76,8 +76,6 @@ class Strip:
         """Wall of which the front is the strip's hinge."""
         self._opened_wall = plane.wall()
         self.section = _section(base, plane, hinge, window)
-        self.window = window
-        """Heel, tip and start of the blade [m]."""
         self._numbering = Numbering(self.section)
         self._reached_at = np.sort(self.section.node_coordinates[:, 1])
         touches = len(self._reached_at) > 0

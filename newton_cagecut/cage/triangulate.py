@@ -18,13 +18,16 @@ _UTURN = 1e-7
 _POOR = 1e-3
 
 
-def triangulate(points: np.ndarray) -> np.ndarray:
+def triangulate(points: np.ndarray, *, apart: np.ndarray | None = None) -> np.ndarray:
     """Triangulate a polygon given by its corners in counterclockwise order.
 
     The polygon may touch itself as slits and bridges do: edges that coincide, corners that coincide, collinear corners.
 
     Args:
         points: Corners, shape (corner_count, 2).
+        apart: Corners of which no diagonal may join two, as a mask, shape (corner_count,). That can be had if they lie
+            on the border of a convex region around the polygon, edges between them on that border too, and some other
+            corner is there.
 
     Returns:
         Triangles of corner indices, shape (corner_count - 2, 3), counterclockwise.
@@ -42,10 +45,11 @@ def triangulate(points: np.ndarray) -> np.ndarray:
     scale = float((high - low).max())
     scaled = (points - low) / (scale if scale > 0.0 else 1.0)
     corner = np.concatenate([scaled, inward_directions(scaled)], axis=1)
+    apart = np.zeros(count, dtype=bool) if apart is None else apart
     remaining = np.arange(count)
     triangles = []
     while len(remaining) > 3:
-        clipped = _choose_ears(corner, remaining)
+        clipped = _choose_ears(corner, remaining, apart)
         size = len(remaining)
         triangles.append(
             np.stack([remaining[clipped - 1], remaining[clipped], remaining[(clipped + 1) % size]], axis=1)
@@ -101,13 +105,15 @@ def _orientation(corner: np.ndarray, i: np.ndarray, j: np.ndarray, k: np.ndarray
     return sign
 
 
-def _choose_ears(corner: np.ndarray, remaining: np.ndarray) -> np.ndarray:
+def _choose_ears(corner: np.ndarray, remaining: np.ndarray, apart: np.ndarray) -> np.ndarray:
     """Positions in ``remaining`` of ears that can be clipped together, at least one."""
     before, after = np.roll(remaining, 1), np.roll(remaining, -1)
     turn = _orientation(corner, before, remaining, after)
-    candidate = np.flatnonzero(turn > 0)
+    allowed = ~(apart[before] & apart[after])
+    candidate = np.flatnonzero((turn > 0) & allowed)
     if len(candidate) == 0:
-        return np.array([int(np.argmax(_shape_quality(corner, before, remaining, after)))])
+        quality = _shape_quality(corner, before, remaining, after)
+        return np.array([int(np.argmax(np.where(allowed | ~allowed.any(), quality, -np.inf)))])
     a, b, c = before[candidate], remaining[candidate], after[candidate]
     quality = _shape_quality(corner, a, b, c)
     blocked = _blocked(corner, a, b, c, remaining[turn <= 0])

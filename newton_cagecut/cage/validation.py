@@ -1,15 +1,21 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that a cage is a closed, oriented manifold of planar polygons around a positive volume.
+"""Checks that a cage is a closed, oriented manifold of planar polygons, in 2D of segments, around a positive volume.
 
 Section 3 of the paper asks for such a boundary and leaves finding out to the user. Every refusal names the culprit.
 """
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+from . import intersection, segment_checks
 from .polygon_mesh import PolygonMesh
+
+if TYPE_CHECKING:
+    from .cage import Cage
 
 _WELD = "merge coincident vertices and fill holes so that every edge has exactly two faces"
 
@@ -56,15 +62,52 @@ def check_loops(vertices: np.ndarray, face_start: np.ndarray, face_vertex: np.nd
         raise ValueError(f"vertex {bad[0]} of the cage belongs to no face; remove the {len(bad)} unused vertices")
 
 
-def check_topology(mesh: PolygonMesh) -> None:
-    """Check that every edge has two opposite half-edges and every vertex one fan of faces.
+def check_boundary(mesh: PolygonMesh, tolerance: float) -> None:
+    """Check that a cage's faces bound a positive volume, before it is known where their planes are.
 
     Args:
-        mesh: The cage's polygons.
+        mesh: The cage's faces.
+        tolerance: Length below which two things coincide [m].
+
+    Raises:
+        ValueError: If they do not.
+    """
+    if tolerance == 0.0:
+        raise ValueError("all vertices of the cage coincide")
+    check_topology(mesh)
+    check_areas(mesh, tolerance)
+    if mesh.dimension == 2:
+        segment_checks.check_crossings(mesh, tolerance)
+    check_volume(mesh)
+
+
+def check_crossings(cage: Cage) -> None:
+    """Check that a cage's faces cross neither themselves nor each other, and that its components are nested right.
+
+    Args:
+        cage: The cage; in 2D its segments are known not to cross.
+
+    Raises:
+        ValueError: If they do, or are not.
+    """
+    if cage.dimension == 3:
+        intersection.check_simple_faces(cage.mesh, cage.corner_coordinates, cage.length_tolerance)
+        intersection.check_face_pairs(cage.mesh, cage.triangles, cage.triangle_face, cage.length_tolerance)
+    intersection.check_nesting(cage.vertices, cage.vertex_component, cage.component_volumes, cage.winding_numbers)
+
+
+def check_topology(mesh: PolygonMesh) -> None:
+    """Check that every edge has two opposite half-edges and every vertex one fan of faces, or one way through in 2D.
+
+    Args:
+        mesh: The cage's faces.
 
     Raises:
         ValueError: If the mesh is open, not manifold or not consistently oriented.
     """
+    if mesh.dimension == 2:
+        segment_checks.check_closed(mesh)
+        return
     lonely = np.flatnonzero(mesh.twin < 0)
     if len(lonely):
         _refuse_edge(mesh, int(lonely[0]))

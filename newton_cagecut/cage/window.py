@@ -4,7 +4,8 @@
 
 Section 5.2 of the paper sweeps a whole line. A knife ends at its heel and its tip, and may begin inside the body. Where
 its path ends inside a face or inside the body, the section gets a *pinned* node, which both sides of the cut share;
-from one to the next the section runs along the window's border, through no face.
+from one to the next the section runs along the window's border, through no face. Where it begins without touching a
+face, its two sides share their whole border at first: a *hub* amidst each side is what they open at.
 """
 
 from __future__ import annotations
@@ -29,9 +30,6 @@ class ClippedSection(Section):
             tip: Greatest coordinate a [m].
             start: Least coordinate s [m].
             tolerance: Distance that borders keep from nodes [m].
-
-        Raises:
-            ValueError: If a part of the cut would begin inside the body without touching a face.
         """
         self.mesh, self.plane = section.mesh, section.plane
         self.arrive, self.leave = section.arrive, section.leave
@@ -44,28 +42,20 @@ class ClippedSection(Section):
         self.chord_slot, self.chord_face, self.chord_node = section.chord_slot, section.chord_face, section.chord_node
         self._group, self._next, self._closed = section.chord_group, section.chord_next, section.chord_loop >= 0
         self._between: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+        borders = []
         for axis, sign, border in ((0, 1.0, heel), (0, -1.0, tip), (1, 1.0, start)):
-            if np.isfinite(border):
-                self._clip(axis, sign, border, tolerance)
+            value = sign * self.node_coordinates[:, axis]
+            limit = _clear(value, sign * border, tolerance)
+            borders.append(sign * limit)
+            if not (value > limit).all():
+                self._clip(axis, sign, value - limit, borders[-1])
+        self.window = tuple(borders)
         self._drop_unused()
-        on_face = np.zeros(self.node_count, dtype=bool)
-        on_face[self.chord_node[self.chord_face >= 0]] = True
-        if not on_face[self.chord_node].any(axis=1).all():
-            raise ValueError(
-                "the blade starts inside the body, with its heel and tip inside too: the cut would touch no face; "
-                "move it to where it meets the surface"
-            )
 
-    def _clip(self, axis: int, sign: float, border: float, tolerance: float) -> None:
-        """Keep what lies at ``sign * (coordinate - border) >= 0``."""
-        value = sign * self.node_coordinates[:, axis]
-        limit = _clear(value, sign * border, tolerance)
-        inside, border = value - limit, sign * limit
-        keeps = inside > 0.0
-        ends = keeps[self.chord_node]
+    def _clip(self, axis: int, sign: float, inside: np.ndarray, border: float) -> None:
+        """Keep what lies inside of a border; the nodes' distances from it are positive there."""
+        ends = (inside > 0.0)[self.chord_node]
         crossing = np.flatnonzero(ends[:, 0] != ends[:, 1])
-        if len(crossing) == 0 and keeps.all():
-            return
         first = self.node_count
         a, b = self.chord_node[crossing].T
         share = (inside[a] / (inside[a] - inside[b]))[:, None]
@@ -160,6 +150,13 @@ class ClippedSection(Section):
     def chord_group(self) -> np.ndarray:
         """Number of the solid whose section each chord bounds, shape (chord_count,)."""
         return self._group
+
+    @cached_property
+    def chord_hubs(self) -> np.ndarray:
+        """Whether a chord runs along the start from border to border, with a hub beside it, shape (chord_count,)."""
+        on_face = np.zeros(self.node_count, dtype=bool)
+        on_face[self.chord_node[self.chord_face >= 0]] = True
+        return ~on_face[self.chord_node].any(axis=1)
 
     @cached_property
     def chord_swells(self) -> np.ndarray:

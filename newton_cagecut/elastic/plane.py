@@ -3,11 +3,10 @@
 
 """Plane bodies: what keeps their vertices in the plane through their rest positions.
 
-Plane strain is three-dimensional elasticity with the third direction of F fixed to the identity's (paper, sections 3
-and 6.1, where bodies are plane or solid). A plane body's vertices are points of the world, and its plane may be tilted.
-Velocities and their changes are taken into the plane in float64, and positions are put back to it after each step, so
-that rounding does not add up: velocities leave the plane by at most one rounding of their own size, positions by one of
-theirs, and in a plane that is normal to an axis of the world both are exact.
+Plane strain is the solid's elasticity (paper, section 6.1) with the third direction of F held at the identity's. A
+plane body's vertices are points of the world, and its plane may be tilted. Velocities and their changes are taken into
+the plane in float64, and positions are put back to it after each step, so that rounding does not add up: what is left
+out of the plane is one rounding to float32, and nothing at all in a plane that is normal to an axis of the world.
 """
 
 from __future__ import annotations

@@ -261,9 +261,25 @@ class HarmonicCoordinates:
         Raises:
             ValueError: A key is of no wall.
         """
+        count = len(_checked_points(points, self.domain.dimension))
+        self._checked_keys(point_keys, count, lowest=0)
+        return self.weights_at(points, point_keys, walks=walks)
+
+    def weights_at(self, points: np.ndarray, point_keys: np.ndarray | None = None, *, walks: int = 1024) -> np.ndarray:
+        """Weights of further points in the cage as it is, which are not kept.
+
+        Args:
+            points: Rest positions [m], shape (n, 3).
+            point_keys: Key 2 * wall + side for points on a wall, else -1, shape (n,).
+            walks: Walks a point.
+
+        Returns:
+            Weights, shape (n, cage.vertex_count), float32.
+
+        Raises:
+            ValueError: A point lies outside the cage, or a key is of no wall.
+        """
         options = self._walker.options
-        points = _checked_points(points, self.domain.dimension)
-        self._checked_keys(point_keys, len(points), lowest=0)
         coordinates = HarmonicCoordinates(
             self.domain,
             points,

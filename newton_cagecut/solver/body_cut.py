@@ -38,14 +38,9 @@ class BodyCut:
     def __init__(self, body: CageBody, blade: Blade) -> None:
         if not body.definition.cuttable:
             raise ValueError(f"{body.label} was added with cuttable=False; it keeps no walk cache to cut with")
-        if isinstance(blade, Blade) and blade.window is not None:
-            raise ValueError(
-                "surfaces cannot follow a knife of finite width or one that starts inside yet; cut bodies with a blade "
-                "without width and start"
-            )
         self.body = body
         self.cut = Cut(body.cage, blade)
-        self._surface_cut = SurfaceCut(body.surface, self.cut.plane, self.cut.wall)
+        self._surface_cut = SurfaceCut(body.surface, self.cut.plane, self.cut.wall, window=self.cut.window)
 
     @property
     def depth(self) -> float:
@@ -149,11 +144,11 @@ class _Transfer:
         self._vertices = np.concatenate([edit.created, edit.moved])
         self._vertex_count = edit.cage.vertex_count
         points = edit.cage.vertices[self._vertices]
-        keys = np.asarray(edit.before.face_key)[edit.source_faces]
+        keys = np.where(edit.source_faces >= 0, edit.before.face_key[edit.source_faces], -1)
         self._rest = body.to_world(points)
         self._weights = np.zeros((0, edit.before.vertex_count))
         if len(points):
-            weights = body.coordinates.boundary_weights(points, keys, walks=_TRANSFER_WALKS)
+            weights = body.coordinates.weights_at(points, keys, walks=_TRANSFER_WALKS)
             self._weights = weights.astype(np.float64)
 
     def apply(self, states: Sequence[newton.State]) -> None:

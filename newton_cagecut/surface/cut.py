@@ -12,11 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cage import BladePlane, triangulate
+from ..cage import BladePlane
 from ..cage.hinge import Hinge
 from ..cage.numbering import Numbering
 from ..cage.opening import Opening
 from ..cage.section import Section
+from ..cage.window import ClippedSection
+from .split import cap_triangles, split_triangles
 from .surface import Surface
 
 _ON_FRONT = 1e-10
@@ -34,7 +36,7 @@ class SurfaceEdit:
     created: np.ndarray
     """Ids of the points that are new, shape (created_count,)."""
     moved: np.ndarray
-    """Ids of the points that have moved, shape (moved_count,)."""
+    """Ids of the points that have moved or changed sides, shape (moved_count,)."""
 
     @property
     def is_empty(self) -> bool:
@@ -53,13 +55,16 @@ class SurfaceSnapshot:
 class SurfaceCut:
     """A cut on its way through a surface."""
 
-    def __init__(self, surface: Surface, plane: BladePlane, wall: int):
+    def __init__(
+        self, surface: Surface, plane: BladePlane, wall: int, *, window: tuple[float, float, float] | None = None
+    ):
         """Begin a cut; nothing changes before :meth:`advance`.
 
         Args:
             surface: The surface to cut, which may have been cut before.
             plane: Plane of the cage's cut.
             wall: Number of the cage's wall that this cut makes.
+            window: Heel, tip and start of the cage's cut, where they are in the plane; None for a blade without [m].
 
         Raises:
             TypeError: If the surface is not a surface.
@@ -69,11 +74,21 @@ class SurfaceCut:
             raise TypeError(f"surface must be a Surface, got {type(surface).__name__}")
         surface.refuse_branches()
         self._identity = object()
-        self._begin(surface, plane, wall, None)
+        self._begin(surface, plane, wall, window=window)
         self._before = self.snapshot()
 
-    def _begin(self, surface: Surface, plane: BladePlane, wall: int, hinge: Hinge | None) -> None:
+    def _begin(
+        self,
+        surface: Surface,
+        plane: BladePlane,
+        wall: int,
+        *,
+        hinge: Hinge | None = None,
+        window: tuple[float, float, float] | None = None,
+    ) -> None:
         section = Section(surface.mesh, plane, face_group=surface.triangle_solid, hinge=hinge)
+        if window is not None:
+            section = ClippedSection(section, *window, tolerance=0.0)
         self.base = surface
         """The surface before the present plane's part of the cut."""
         self.surface = surface
@@ -88,7 +103,15 @@ class SurfaceCut:
         self._numbering = Numbering(section)
         self._tips = np.zeros(0, dtype=np.int64)
 
-    def go_on(self, plane: BladePlane, wall: int, *, surface: Surface | None = None, hinged: bool = True) -> None:
+    def go_on(
+        self,
+        plane: BladePlane,
+        wall: int,
+        *,
+        surface: Surface | None = None,
+        hinged: bool = True,
+        window: tuple[float, float, float] | None = None,
+    ) -> None:
         """Follow the cage's cut into another plane, from the present front, or into a surface that others have cut.
 
         Args:
@@ -96,13 +119,14 @@ class SurfaceCut:
             wall: Number of the cage's wall that it makes there.
             surface: The surface as it is now, made by other cuts of this one; the present one by default.
             hinged: Whether the plane begins at ``s = 0``; not so where the cage's cut had not begun to open.
+            window: Heel, tip and start of the cage's cut there, of a knife that had not begun to open [m].
 
         Raises:
             ValueError: If the section does not close at the front. Nothing has changed then.
         """
         surface = surface or self.surface
         if not hinged:
-            self._begin(surface, plane, wall, None)
+            self._begin(surface, plane, wall, window=window)
             return
         on_front = np.zeros(surface.point_count, dtype=bool)
         on_front[self._tips] = True
@@ -113,7 +137,7 @@ class SurfaceCut:
         s = self.plane.coordinates(surface.points[candidates])[:, 1]
         limit = _ON_FRONT * np.ptp(surface.points, axis=0).max()
         on_front[candidates[np.abs(s - self.front) <= limit]] = True
-        self._begin(surface, plane, wall, Hinge.of(surface.mesh, key, self.wall, on_front))
+        self._begin(surface, plane, wall, hinge=Hinge.of(surface.mesh, key, self.wall, on_front))
         self.front = 0.0
 
     def advance(self, front: float) -> SurfaceEdit:
@@ -140,7 +164,8 @@ class SurfaceCut:
         if opening.created_count:
             self.surface = self._open_surface(opening)
         common = before.point_count
-        moved = np.flatnonzero((before.points != self.surface.points[:common]).any(axis=1))
+        differs = (before.points != self.surface.points[:common]).any(axis=1)
+        moved = np.flatnonzero(differs | (before.point_key != self.surface.point_key[:common]))
         created = np.arange(common, self.surface.point_count)
         if len(created) == len(moved) == 0:
             self.surface = before
@@ -171,12 +196,11 @@ class SurfaceCut:
 
     def _open_surface(self, opening: Opening) -> Surface:
         base, wall = self.base, self.wall
-        kept, added, owner = self._split_triangles(opening)
-        caps, side = _cap_triangles(opening)
-        swept = np.full(self._section.node_count, 2 * wall, dtype=np.int32)
-        keys = opening.created_values(swept, np.full(len(opening.tip_chords), 2 * wall + 1, dtype=np.int32))
-        plus = self._numbering.plus[opening.region.swept] - base.point_count
-        keys[plus[plus >= 0]] = 2 * wall + 1
+        kept, added, owner = split_triangles(opening)
+        caps, side = cap_triangles(opening)
+        keys = np.full(opening.created_count, 2 * wall + 1, dtype=np.int32)
+        minus, plus = (ids[opening.region.labels] for ids in opening.side_vertices())
+        keys[minus[minus != plus] - base.point_count] = 2 * wall
         return Surface._assembled(
             np.concatenate([base.points, opening.created_positions()]),
             np.concatenate([kept, added, caps]).astype(np.int32),
@@ -192,77 +216,14 @@ class SurfaceCut:
         if values is None:
             return None
         section, chords = self._section, opening.tip_chords
-        above, below = values[section.node_above], values[section.node_below]
-        at_nodes = above + section.node_fraction[:, None] * (below - above)
+        at_nodes = section.node_values(values)
         low, high = section.chord_ends[chords].T
         s = section.node_coordinates[:, 1]
         t = ((self.front - s[low]) / (s[high] - s[low]))[:, None]
         at_tips = at_nodes[low] + t * (at_nodes[high] - at_nodes[low])
         return np.concatenate([values, opening.created_values(at_nodes, at_tips)])
 
-    def _split_triangles(self, opening: Opening) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Triangles in the places of the old ones, further ones, and the old one of each of those."""
-        base = self.base
-        tip = np.full(base.triangle_count, -1)
-        tip[self._section.chord_face[opening.tip_chords]] = self._numbering.tip[opening.tip_chords]
-        owner = np.concatenate([opening.faces, np.array(opening.extra_face, dtype=np.int64)])
-        loops = opening.first_loops + opening.extra_loops
-        size = np.array([len(loop) for loop in loops], dtype=np.int64)
-        parts, owners = [], []
-        for corners, fan in ((3, _keep), (4, _split_quads), (5, _fan_slits), (6, _fan_slits)):
-            which = np.flatnonzero(size == corners)
-            if len(which):
-                polygons = np.array([loops[i] for i in which])
-                parts.append(fan(polygons, opening, tip[owner[which]]))
-                owners.append(np.repeat(owner[which], corners - 2))
-        triangles, owners = np.concatenate(parts), np.concatenate(owners)
-        order = np.argsort(owners, kind="stable")
-        triangles, owners = triangles[order], owners[order]
-        is_first = np.concatenate([[True], owners[1:] != owners[:-1]])
-        kept = opening.face_vertex.reshape(-1, 3).copy()
-        kept[owners[is_first]] = triangles[is_first]
-        return kept, triangles[~is_first], owners[~is_first]
-
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     return vectors / np.where(length > 0.0, length, 1.0)
-
-
-def _keep(polygons: np.ndarray, opening: Opening, tip: np.ndarray) -> np.ndarray:
-    return polygons
-
-
-def _split_quads(polygons: np.ndarray, opening: Opening, tip: np.ndarray) -> np.ndarray:
-    """Quads, which are convex, split along their shorter diagonals; two triangles each, one after the other."""
-    points = _positions(polygons, opening)
-    across = np.linalg.norm(points[:, [0, 1]] - points[:, [2, 3]], axis=2)
-    turned = np.where((across[:, 0] <= across[:, 1])[:, None], polygons, np.roll(polygons, -1, axis=1))
-    return turned[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
-
-
-def _fan_slits(polygons: np.ndarray, opening: Opening, tip: np.ndarray) -> np.ndarray:
-    """Slit triangles, which their tips see whole, as fans around the tips."""
-    at = (polygons == tip[:, None]).argmax(axis=1)
-    count = polygons.shape[1]
-    turned = np.take_along_axis(polygons, (at[:, None] + np.arange(count)) % count, axis=1)
-    return turned[:, [[0, k, k + 1] for k in range(1, count - 1)]].reshape(-1, 3)
-
-
-def _positions(polygons: np.ndarray, opening: Opening) -> np.ndarray:
-    base = opening.section.mesh.vertices
-    created = opening.created_positions()
-    old = np.minimum(polygons, len(base) - 1)
-    new = np.maximum(polygons - len(base), 0)
-    return np.where((polygons < len(base))[..., None], base[old], created[new])
-
-
-def _cap_triangles(opening: Opening) -> tuple[np.ndarray, np.ndarray]:
-    """Triangles of both sides of the opened section, shape (triangle_count, 3), and the side of each."""
-    minus, plus = opening.side_vertices()
-    parts, sides = [np.zeros((0, 3), dtype=np.int64)], [np.zeros(0, dtype=np.int8)]
-    for loop in opening.region.polygons():
-        corners = np.array(loop)[triangulate(opening.region.coordinates[loop])]
-        parts += [minus[corners], plus[corners[:, ::-1]]]
-        sides += [np.full(len(corners), side, dtype=np.int8) for side in (0, 1)]
-    return np.concatenate(parts), np.concatenate(sides)

@@ -188,21 +188,21 @@ class Surface:
     def triangle_solid(self) -> np.ndarray:
         """Number of the solid that each triangle bounds, shape (triangle_count,).
 
-        A solid is a component, or one with the inside-out components in it that are its cavities. Solids may overlap.
+        A solid is a component, or one with those in it that are its cavities or cuts wholly inside. Solids may overlap.
         """
         mesh = self.mesh
         if mesh.component_count < 2:
             return np.zeros(self.triangle_count, dtype=np.int64)
-        volumes = mesh.component_volumes
+        volumes, outward = mesh.component_volumes, mesh.component_outward
         solid = np.arange(mesh.component_count)
-        cavities = np.flatnonzero(volumes < 0.0)
-        if len(cavities):
-            first = np.unique(mesh.vertex_component, return_index=True)[1][cavities]
+        inner = np.flatnonzero(~outward)
+        if len(inner):
+            first = np.unique(mesh.vertex_component, return_index=True)[1][inner]
             triangles = self.triangles.astype(np.int64)
             number = winding_numbers(self.points[first], self.points, triangles, mesh.face_component, len(volumes))
-            around = np.where((number > 0.5) & (volumes > 0.0), volumes, np.inf)
+            around = np.where((number > 0.5) & outward, volumes, np.inf)
             found = np.isfinite(around).any(axis=1)
-            solid[cavities[found]] = around[found].argmin(axis=1)
+            solid[inner[found]] = around[found].argmin(axis=1)
         return solid[mesh.face_component]
 
 
