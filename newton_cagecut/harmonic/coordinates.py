@@ -11,10 +11,10 @@ import numpy as np
 import warp as wp
 
 from ..cage import Cage, CageEdit, check_inside
-from .compact import CPU_BLOCK, ON_FACE, RESUME, REWALK, gather, make_mark_kernel
+from .compact import ON_FACE, RESUME, REWALK, gather, make_mark_kernel
 from .domain import Domain, DomainChange
 from .landing import LANDING_DTYPES
-from .launch import launch
+from .launch import launch_blocks
 from .options import WalkOptions
 from .snapshot import CoordinatesSnapshot
 from .stats import UpdateStats
@@ -134,6 +134,11 @@ class HarmonicCoordinates:
         Shape (point_count,).
         """
         return self._walker.degrees.numpy()[: self.point_count].copy()
+
+    @property
+    def lowest_weights(self) -> np.ndarray:
+        """Least weight of each point, 0 where none is negative: controls can overshoot; shape (point_count,)."""
+        return self._walker.lowest.numpy()[: self.point_count].copy()
 
     @property
     def landings(self) -> dict[str, np.ndarray]:
@@ -299,10 +304,8 @@ class HarmonicCoordinates:
             marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
             touched = wp.zeros(self.point_count, dtype=wp.uint8, device=device)
             changes = wp.array(change.key_changes, dtype=wp.uint8, device=device)
-            block = 1 if device.is_cuda else CPU_BLOCK
-            inputs = [block, walk_count, self.walks, walker.bounds, pieces, walker.points, walker.landings.key]
-            inputs += [changes, marks, touched]
-            launch(make_mark_kernel(kind), -(-walk_count // block), inputs, device=device, smallest_chunk=8)
+            inputs = [self.walks, walker.bounds, pieces, walker.points, walker.landings.key, changes, marks, touched]
+            launch_blocks(make_mark_kernel(kind), walk_count, inputs, device=device)
             rewalk, on_face, resume = (gather(marks, int(mark)) for mark in (REWALK, ON_FACE, RESUME))
         stats.checked = walk_count
         stats.rewalked, stats.on_face, stats.resumed = rewalk.size, on_face.size, resume.size
