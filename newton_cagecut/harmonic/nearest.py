@@ -90,7 +90,7 @@ def make_nearest(*, distance: str, gated: bool) -> wp.Function:
         triangles: WallTriangles, cells: GridCells, x: wp.vec3, best: Nearest, passed: wp.uint32
     ) -> Nearest:
         cell = cell_of(cells, x)
-        for item in range(cells.start[cell], cells.start[cell + 1]):
+        for item in range(cells.first[cell], cells.last[cell]):
             best = offered(triangles, cells.items[item], x, best, passed)
         return best
 

@@ -171,9 +171,9 @@ class Walls:
         gates[self._rows["wall"]] = self._rows["gate"]
         return wp.array(gates, dtype=wp.int32, device=self.device)
 
-    def box(self) -> tuple[np.ndarray, np.ndarray]:
-        """Least and greatest coordinates of the triangles in the unit frame, shape (3,) each."""
-        corners = np.concatenate([self._rows[f"corner_{k}"] for k in range(3)])
+    def box(self, first: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Least and greatest coordinates of the triangles from the first on in the unit frame, shape (3,) each."""
+        corners = np.concatenate([self._rows[f"corner_{k}"][first:] for k in range(3)])
         return corners.min(axis=0), corners.max(axis=0)
 
     def state(self) -> tuple:
