@@ -185,8 +185,8 @@ def _check_states(body: CageBody, states: Sequence[newton.State]) -> None:
                 raise TypeError(f"states[{number}] must be a state with particles, got {type(state).__name__}")
             if array.shape != (count,):
                 raise ValueError(
-                    f"states[{number}].{name} has the shape {array.shape}, the model has {count} particles; pass states "
-                    "of the body's own model"
+                    f"states[{number}].{name} has the shape {array.shape}, the model has {count} particles; pass "
+                    "states of the body's own model"
                 )
 
 
