@@ -147,7 +147,8 @@ class _Transfer:
         self._vertices = np.concatenate([edit.created, edit.moved])
         self._vertex_count = edit.cage.vertex_count
         points = edit.cage.vertices[self._vertices]
-        keys = np.where(edit.source_faces >= 0, edit.before.face_key[edit.source_faces], -1)
+        self._on_face = edit.source_faces >= 0
+        keys = np.where(self._on_face, edit.before.face_key[edit.source_faces], -1)
         self._rest = body.to_world(points)
         self._weights = np.zeros((0, edit.before.vertex_count))
         if len(points):
@@ -171,7 +172,7 @@ class _Transfer:
                 change = self._weights @ (rows[:count] - start)
                 rows[self._vertices] = new_rest + change if field == "particle_q" else change
                 array.assign(rows)
-        fixed[self._vertices] = self._weights @ (fixed[:count] != 0) > _HELD
+        fixed[self._vertices] = self._on_face & (self._weights @ (fixed[:count] != 0) > _HELD)
         body.rest.assign(rest)
         body.fixed.assign(fixed)
 
