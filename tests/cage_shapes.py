@@ -151,8 +151,8 @@ def opened_characteristic(base: Cage, cage: Cage, wall: int) -> int:
 def check_manifold(cage: Cage, volume: float, rtol: float = 1e-9, *, hollow: bool = False) -> None:
     """Assert what every edit must preserve; faces that were only nearly planar keep the volume only nearly.
 
-    Only where the cage may be hollow, components may be the boundaries of cavities, as they always may in 2D; sides of a
-    cut that lies wholly inside may always be.
+    Only where the cage may be hollow, components may be the boundaries of cavities, as they always may in 2D; sides of
+    a cut that lies wholly inside may always be.
     """
     if cage.dimension == 2:
         check_outline(cage, volume, rtol)

@@ -26,7 +26,7 @@ def _arrays(coordinates: HarmonicCoordinates) -> dict[str, np.ndarray]:
     arrays = {"weights": coordinates.weights, "gradients": coordinates.gradients, "bounds": coordinates.bounds}
     arrays |= coordinates.landings | {"degrees": coordinates.degrees}
     arrays |= {"corner": domain.walls.data.corner_0.numpy(), "items": domain.grid.cells.items.numpy()}
-    arrays |= {"start": domain.grid.cells.start.numpy(), "nearest": domain.grid._nearest.numpy().copy()}
+    arrays |= {"start": domain.grid.cells.start.numpy(), "nearest": domain.grid._nearest.numpy()}
     return arrays | {"loops": domain.faces.loop_vertex.numpy(), "position": coordinates._walker.points.position.numpy()}
 
 

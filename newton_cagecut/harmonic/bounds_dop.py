@@ -12,8 +12,7 @@ import itertools
 import numpy as np
 import warp as wp
 
-from .bounds_kind import RANGE, ROUNDING, UNBOUNDED, BoundsKind
-from .bounds_levels import make_layout
+from .bounds_kind import RANGE, ROUNDING, UNBOUNDED, BoundsKind, make_access
 
 wp.set_module_options({"enable_backward": False})
 
@@ -39,26 +38,24 @@ class PieceSlabs:
     count: int
 
 
-def make_dop(axes: np.ndarray, dimension: int, bits: int) -> BoundsKind:
+def make_dop(axes: np.ndarray, dimension: int, level_type: type) -> BoundsKind:
     """Make the DOP of some axes.
 
     Args:
         axes: Axes, of any lengths, along which the unit frame's box lies within the range; shape (axis_count, 3).
         dimension: 2 or 3.
-        bits: Bits of a quantised plane; see ``make_layout``.
+        level_type: Warp's unsigned integer for one quantised plane.
     """
     axis_count = len(axes)
     plane_count = 2 * axis_count
-    layout = make_layout(plane_count, bits)
-    Quantized, level_of, level_at, add_level = layout.Quantized, layout.level_of, layout.level_at, layout.add_level
-    word_type = layout.word_type
-    highest_level = (1 << bits) - 1
+    highest_level = float(np.iinfo(wp.dtype_to_numpy(level_type)).max)
     quantum = 2.0 * RANGE / highest_level
     # Planes are moved outward by one of the fine levels before they are rounded: far more than float32 rounds off.
     slack = min(1.0, 2.0 * RANGE / 65535.0 / quantum)
     axis_matrix = wp.types.matrix(shape=(axis_count, 3), dtype=float)(*axes.reshape(-1).tolist())
     axis_lengths = wp.types.vector(length=axis_count, dtype=float)(*np.linalg.norm(axes, axis=1).tolist())
     Extents = wp.types.vector(length=plane_count, dtype=float)
+    Quantized = wp.types.vector(length=plane_count, dtype=level_type)
 
     @wp.func
     def empty() -> Extents:
@@ -76,67 +73,60 @@ def make_dop(axes: np.ndarray, dimension: int, bits: int) -> BoundsKind:
         return extents
 
     @wp.func
-    def level_below(plane: float) -> int:
-        """The level outward of a plane; 0 is no plane at all, so that what lies outside of the range is held."""
-        level = wp.floor((plane + wp.static(RANGE)) / wp.static(quantum) - wp.static(slack))
-        return int(wp.clamp(level, 0.0, wp.static(float(highest_level))))
-
-    @wp.func
     def quantize(extents: Extents) -> Quantized:
-        """Round every plane outward."""
+        """Round every plane outward; level 0 is no plane at all, so that what lies outside of the range is held."""
         result = Quantized()
-        for k in range(wp.static(axis_count)):  # few enough to be unrolled
-            result = add_level(result, k, level_below(extents[k]))
-            high = k + wp.static(axis_count)
-            result = add_level(result, high, level_below(extents[high]))
+        for k in range(wp.static(plane_count)):
+            level = wp.floor((extents[k] + wp.static(RANGE)) / wp.static(quantum) - wp.static(slack))
+            result[k] = level_type(int(wp.clamp(level, 0.0, wp.static(highest_level))))
         return result
 
     @wp.func
-    def plane_of(level: int) -> float:
+    def plane_of(level: level_type) -> float:
         """The plane that a level stands for."""
-        if level == 0:
+        number = int(level)
+        if number == 0:
             return -UNBOUNDED
-        return float(level) * wp.static(quantum) - wp.static(RANGE)
+        return float(number) * wp.static(quantum) - wp.static(RANGE)
 
     @wp.func
     def dequantize(bounds: Quantized) -> Extents:
         """The planes that are stored."""
         extents = Extents()
         for k in range(wp.static(plane_count)):
-            extents[k] = plane_of(level_of(bounds, k))
+            extents[k] = plane_of(bounds[k])
         return extents
 
     @wp.func
     def merge(a: Quantized, b: Quantized) -> Quantized:
         """Bounds of everything that two bounds hold: those of the union, to the bit."""
-        result = Quantized()
-        for k in range(wp.static(plane_count)):
-            result = add_level(result, k, wp.min(level_of(a, k), level_of(b, k)))
-        return result
+        return wp.min(a, b)
+
+    load, store = make_access(Quantized, level_type)
 
     @wp.func
-    def overlaps_piece(words: wp.array2d[word_type], walk: int, pieces: PieceSlabs, i: int) -> bool:
+    def overlaps_piece(levels: wp.array2d[level_type], walk: int, pieces: PieceSlabs, i: int) -> bool:
         """Whether a walk may meet piece ``i``."""
         for r in range(wp.static(plane_count)):
             k = pieces.order[i, r]
-            if level_at(words, walk, k) > pieces.limit[i, k]:
+            if int(levels[k, walk]) > pieces.limit[i, k]:
                 return False
         for m in range(pieces.low.shape[1]):
             highest = float(0.0)
             for a in range(wp.static(dimension)):
                 k = pieces.half_space[i, wp.static(dimension) * m + a]
-                highest -= pieces.weight[i, wp.static(dimension) * m + a] * plane_of(level_at(words, walk, k))
+                highest -= pieces.weight[i, wp.static(dimension) * m + a] * plane_of(levels[k, walk])
             if highest < pieces.low[i, m]:
                 return False
         return True
 
     @wp.func
-    def overlaps_any(words: wp.array2d[word_type], walk: int, pieces: PieceSlabs) -> bool:
+    def overlaps_any(levels: wp.array2d[level_type], walk: int, pieces: PieceSlabs) -> bool:
         """Whether a walk may meet any piece."""
         result = bool(False)
         for i in range(pieces.count):
             if not result:
-                result = overlaps_piece(words, walk, pieces, i)
+                result = overlaps_piece(levels, walk, pieces, i)
         return result
 
     decompose = _Decomposition(axes, dimension)
@@ -169,7 +159,7 @@ def make_dop(axes: np.ndarray, dimension: int, bits: int) -> BoundsKind:
         return pieces
 
     return BoundsKind(
-        layout,
+        Quantized,
         Extents,
         PieceSlabs,
         empty,
@@ -177,6 +167,8 @@ def make_dop(axes: np.ndarray, dimension: int, bits: int) -> BoundsKind:
         quantize,
         dequantize,
         merge,
+        load,
+        store,
         overlaps_any,
         bound_pieces,
     )

@@ -9,8 +9,7 @@ A sphere bound has no axes, so pieces of wall are bounded by boxes along directi
 import numpy as np
 import warp as wp
 
-from .bounds_kind import RANGE, ROUNDING, UNBOUNDED, BoundsKind
-from .bounds_levels import make_layout
+from .bounds_kind import RANGE, ROUNDING, UNBOUNDED, BoundsKind, make_access
 
 wp.set_module_options({"enable_backward": False})
 
@@ -67,8 +66,7 @@ def make_sphere(dimension: int) -> BoundsKind:
     Args:
         dimension: 2 or 3.
     """
-    layout = make_layout(dimension + 1, 16)
-    Quantized, load = layout.Quantized, layout.load
+    Quantized = wp.types.vector(length=dimension + 1, dtype=wp.uint16)
 
     @wp.func
     def quantize(extents: wp.vec4) -> Quantized:
@@ -109,10 +107,12 @@ def make_sphere(dimension: int) -> BoundsKind:
         other = dequantize(b)
         return quantize(enclose(dequantize(a), wp.vec3(other[0], other[1], other[2]), other[3]))
 
+    load, store = make_access(Quantized, wp.uint16)
+
     @wp.func
-    def overlaps_any(words: wp.array2d[wp.uint16], walk: int, pieces: PieceBoxes) -> bool:
+    def overlaps_any(levels: wp.array2d[wp.uint16], walk: int, pieces: PieceBoxes) -> bool:
         """Whether a walk may meet any piece."""
-        sphere = dequantize(load(words, walk))
+        sphere = dequantize(load(levels, walk))
         center = wp.vec3(sphere[0], sphere[1], sphere[2])
         reach = sphere[3] * (1.0 + _SHARE)
         result = bool(False)
@@ -127,7 +127,7 @@ def make_sphere(dimension: int) -> BoundsKind:
         return result
 
     return BoundsKind(
-        layout,
+        Quantized,
         wp.vec4,
         PieceBoxes,
         empty,
@@ -135,6 +135,8 @@ def make_sphere(dimension: int) -> BoundsKind:
         quantize,
         dequantize,
         merge,
+        load,
+        store,
         overlaps_any,
         _bound_pieces,
     )

@@ -44,7 +44,7 @@ def make_mark_kernel(bounds_kind: BoundsKind) -> wp.Kernel:
         block: int,
         walk_count: int,
         walks: int,
-        bounds: wp.array2d[bounds_kind.layout.word_type],
+        bounds: wp.array2d[bounds_kind.level_type],
         pieces: bounds_kind.PieceBounds,
         points: QueryPoints,
         keys: wp.array[wp.int32],
@@ -70,7 +70,7 @@ def make_mark_kernel(bounds_kind: BoundsKind) -> wp.Kernel:
                 mark = REWALK
                 if (key & (PASSED | CAPPED)) == 0 and points.first_radius[walk // walks] >= ON_WALL:
                     mark = RESUME
-            if bounds_kind.layout.level_at(bounds, walk, pieces.first_component) <= pieces.first_limit:
+            if int(bounds[pieces.first_component, walk]) <= pieces.first_limit:
                 if bounds_kind.overlaps_any(bounds, walk, pieces):
                     mark = REWALK
                     if change == CHANGED_KEY:

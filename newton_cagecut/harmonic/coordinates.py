@@ -144,9 +144,8 @@ class HarmonicCoordinates:
 
     @property
     def bounds(self) -> np.ndarray:
-        """The levels of the walks' quantised bounds, a row a walk; a copy."""
-        walker = self._cache_of("bounds")
-        return walker.bounds_kind.layout.unpack(walker.bounds.numpy()[:, : self.point_count * self.walks])
+        """The cached bounds of the walks, quantised, a row a walk; a copy."""
+        return self._cache_of("bounds").bounds.numpy()[:, : self.point_count * self.walks].T.copy()
 
     def memory(self) -> dict[str, int]:
         """Bytes of each part on the device."""

@@ -91,7 +91,7 @@ def make_walk_kernel(
         epsilon: float,
         max_steps: int,
         landings: Landings,
-        bounds: wp.array2d[bounds_kind.layout.word_type],
+        bounds: wp.array2d[bounds_kind.level_type],
         touched: wp.array[wp.uint8],
     ):
         slot = offset + wp.tid()
@@ -110,12 +110,12 @@ def make_walk_kernel(
             x = to_space(landings.point[walk])
             stream = stream_behind(seed, gate)
             passed = gate_bit(gate)
-            earlier = bounds_kind.layout.load(bounds, walk)
+            earlier = bounds_kind.load(bounds, walk)
         elif points.key[point] >= 0:
             landings.key[walk] = points.key[point]
             landings.point[walk] = from_space(x)
             if wp.static(bounded):
-                bounds_kind.layout.store(bounds, walk, earlier)
+                bounds_kind.store(bounds, walk, earlier)
             return
         nearest = nothing_yet()
         step = int(0)
@@ -177,6 +177,6 @@ def make_walk_kernel(
             whole = bounds_kind.quantize(extents)
             if wp.static(gated):
                 whole = bounds_kind.merge(earlier, whole)
-            bounds_kind.layout.store(bounds, walk, whole)
+            bounds_kind.store(bounds, walk, whole)
 
     return walk_on_spheres

@@ -66,7 +66,7 @@ class Walker:
         kept = point_capacity * options.walks if cuttable else 0
         self.landings = self._empty_landings(kept)
         self.bounds_kind = make_bounds(options.bounds, domain.dimension)
-        self.bounds = self.bounds_kind.empty_words(kept, device)
+        self.bounds = self.bounds_kind.empty_levels(kept, device)
         self._touched = wp.zeros(point_capacity, dtype=wp.uint8, device=device)
         self._make_weights(vertex_capacity or domain.cage.vertex_count)
 
