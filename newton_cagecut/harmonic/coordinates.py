@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 
 import numpy as np
@@ -12,13 +13,13 @@ import warp as wp
 
 from ..cage import Cage, CageEdit, check_inside
 from .checks import checked_indices, checked_keys, checked_points
-from .compact import CPU_BLOCK, ON_FACE, RESUME, REWALK, gather, make_mark_kernel, unmark_walks
-from .domain import Domain, DomainChange
+from .domain import Domain
 from .landing import LANDING_DTYPES
-from .launch import launch
 from .options import WalkOptions
 from .snapshot import CoordinatesSnapshot
 from .stats import UpdateStats
+from .storage import load_walker, save_walker
+from .update import run_concerned
 from .walker import Walker
 
 
@@ -189,7 +190,7 @@ class HarmonicCoordinates:
         self._cage = edit.cage
         if edit.is_empty:
             return stats
-        self._run_concerned(change, stats)
+        run_concerned(walker, change, stats)
         return stats
 
     def recompute(self) -> UpdateStats:
@@ -223,6 +224,53 @@ class HarmonicCoordinates:
             raise ValueError("restore: the snapshot is of other coordinates; restore those, or take one of these")
         snapshot.restore()
         self._cage = snapshot.cage
+
+    def save(self, path: str | os.PathLike) -> None:
+        """Write the coordinates to a file, walks and cuts so far included, for :meth:`load`.
+
+        Args:
+            path: Where to write it; a file that is there is replaced once the new one is whole.
+
+        Raises:
+            OSError: The file cannot be written; one that was there is as it was.
+            ValueError: There is no walk cache, or a shared domain has gone on to another cage.
+        """
+        walker = self._cache_of("save")
+        if self.domain.cage is not self._cage:
+            raise ValueError(
+                "save: the shared domain holds a later cage than these coordinates; recompute() them first"
+            )
+        save_walker(walker, path)
+
+    @classmethod
+    def load(
+        cls,
+        path: str | os.PathLike,
+        cage: Cage,
+        points: np.ndarray,
+        *,
+        device: wp.context.Devicelike = None,
+        **options: object,
+    ) -> HarmonicCoordinates:
+        """Read coordinates that were saved; edits go on from there, bit for bit as if they had never been away.
+
+        Args:
+            path: Where the file is.
+            cage: The cage that they were for when they were saved; after a cut that is ``cut.cage``.
+            points: Rest positions of the points [m], shape (point_count, dimension).
+            device: Where to put them; Warp's current device by default.
+            **options: Options that they must have been made with, such as the seed; the others are taken as they are.
+
+        Raises:
+            OSError: There is no such file, or it cannot be read.
+            TypeError: There is no such option.
+            ValueError: The file is cut short, damaged, of another version, or of another cage, other points or other
+                options, which the text names; or its walks do not repeat themselves on this device.
+        """
+        coordinates = cls.__new__(cls)
+        walker = load_walker(path, cage, points, device=wp.get_device(device), options=options)
+        coordinates._walker, coordinates.domain, coordinates._cage = walker, walker.domain, cage
+        return coordinates
 
     def set_points(self, indices: np.ndarray, points: np.ndarray, point_keys: np.ndarray | None = None) -> UpdateStats:
         """Move points, put new ones where some were removed, or add them at the end, and walk for them alone.
@@ -315,37 +363,6 @@ class HarmonicCoordinates:
             point_keys=point_keys,
         )
         return coordinates.weights
-
-    def _run_concerned(self, change: DomainChange, stats: UpdateStats) -> None:
-        walker, device = self._walker, self.domain.device
-        walk_count, removed = self.point_count * self.walks, self.removed_points
-        with stats.time("check", device):
-            kind = walker.bounds_kind
-            pieces = kind.bound_pieces(change.polygons, change.directions, device)
-            marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
-            touched = wp.zeros(self.point_count, dtype=wp.uint8, device=device)
-            changes = wp.array(change.key_changes, dtype=wp.uint8, device=device)
-            block = 1 if device.is_cuda else CPU_BLOCK
-            inputs = [block, walk_count, self.walks, walker.bounds, pieces, walker.points, walker.landings.key]
-            inputs += [changes, marks, touched]
-            launch(make_mark_kernel(kind), -(-walk_count // block), inputs, device=device, smallest_chunk=8)
-            if len(removed):
-                work = walker.walks_of(removed)
-                launch(unmark_walks, work.size, [work, marks], device=device)
-            rewalk, on_face, resume = (gather(marks, int(mark)) for mark in (REWALK, ON_FACE, RESUME))
-        stats.checked = stats.walk_count
-        stats.rewalked, stats.on_face, stats.resumed = rewalk.size, on_face.size, resume.size
-        walker.walk(rewalk, stats, touched=touched)
-        walker.land(rewalk, stats, part="rewalk")
-        if resume.size:
-            walker.walk(resume, stats, touched=touched, resumed=True)
-            walker.land(resume, stats, part="resume")
-        walker.land(on_face, stats, part="on_face", touched=touched)
-        concerned = touched.numpy() != 0
-        if walker.options.correction != "none":
-            concerned |= self.degrees == 0  # An affine correction is spread over all vertices of a piece.
-        concerned[removed] = False
-        walker.resolve(np.flatnonzero(concerned), stats)
 
     def _cache_of(self, wanted: str) -> Walker:
         if not self._walker.cuttable:

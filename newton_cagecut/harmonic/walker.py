@@ -113,6 +113,11 @@ class Walker:
         return self.points.key.numpy()[: self.point_count]
 
     @property
+    def rest(self) -> np.ndarray:
+        """Rest positions of the points [m], shape (point_count, dimension)."""
+        return self._rest[: self.point_count]
+
+    @property
     def removed_points(self) -> np.ndarray:
         """Numbers of the points that were removed, ascending."""
         return np.flatnonzero(self._keys == REMOVED)
