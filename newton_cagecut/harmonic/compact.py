@@ -15,9 +15,6 @@ from .walk import ON_WALL
 
 wp.set_module_options({"enable_backward": False})
 
-CPU_BLOCK = 4096
-"""Walks that one thread marks on a CPU, where a thread costs more than a walk; on CUDA it is one."""
-
 KEPT = wp.constant(wp.uint8(0))
 REWALK = wp.constant(wp.uint8(1))
 ON_FACE = wp.constant(wp.uint8(2))

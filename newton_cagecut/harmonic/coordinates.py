@@ -143,6 +143,11 @@ class HarmonicCoordinates:
         return self._walker.degrees.numpy()[: self.point_count].copy()
 
     @property
+    def lowest_weights(self) -> np.ndarray:
+        """Least weight of each point, 0 where none is negative: controls can overshoot; shape (point_count,)."""
+        return self._walker.lowest.numpy()[: self.point_count].copy()
+
+    @property
     def landings(self) -> dict[str, np.ndarray]:
         """The cached landings: "key", "point", "face", "edge", "param", a row a walk; copies."""
         landings = self._cache_of("landings").landings

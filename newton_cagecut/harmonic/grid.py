@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from .launch import launch
+from .launch import launch, launch_blocks
 from .walls import Walls, WallTriangles, closest_point_on_triangle, plane_distance
 
 wp.set_module_options({"enable_backward": False})
@@ -162,6 +162,8 @@ def _reach_of_new(
 @wp.kernel(enable_backward=False)
 def _measure_new(
     offset: int,
+    block: int,
+    cell_count: int,
     triangles: WallTriangles,
     first_new: int,
     cells: GridCells,
@@ -169,26 +171,29 @@ def _measure_new(
     reaches: wp.array[Reach],
     counts: wp.array[wp.int32],
 ):
-    cell = offset + wp.tid()
-    center = cell_center(cells, cell)
-    reach = _reach_of_new(triangles, first_new, cells, cell, center, nearest[cell])
-    reaches[cell] = reach
-    count = cells.start[cell + 1] - cells.start[cell]
-    if reach.lateral >= 0.0:
-        count = int(0)
-        wall = triangles.wall[first_new]
-        for item in range(cells.start[cell], cells.start[cell + 1]):
-            if _is_candidate(triangles, cells.items[item], wall, cells, center, reach):
-                count += 1
-        for t in range(first_new, triangles.count):
-            if _is_candidate(triangles, t, wall, cells, center, reach):
-                count += 1
-    counts[cell] = count
+    first = (offset + wp.tid()) * block
+    wall = triangles.wall[first_new]
+    for cell in range(first, wp.min(first + block, cell_count)):
+        center = cell_center(cells, cell)
+        reach = _reach_of_new(triangles, first_new, cells, cell, center, nearest[cell])
+        reaches[cell] = reach
+        count = cells.start[cell + 1] - cells.start[cell]
+        if reach.lateral >= 0.0:
+            count = int(0)
+            for item in range(cells.start[cell], cells.start[cell + 1]):
+                if _is_candidate(triangles, cells.items[item], wall, cells, center, reach):
+                    count += 1
+            for t in range(first_new, triangles.count):
+                if _is_candidate(triangles, t, wall, cells, center, reach):
+                    count += 1
+        counts[cell] = count
 
 
 @wp.kernel(enable_backward=False)
 def _fill_merged(
     offset: int,
+    block: int,
+    cell_count: int,
     triangles: WallTriangles,
     first_new: int,
     old: GridCells,
@@ -196,22 +201,23 @@ def _fill_merged(
     reaches: wp.array[Reach],
     nearest: wp.array[float],
 ):
-    cell = offset + wp.tid()
-    center = cell_center(cells, cell)
-    reach = reaches[cell]
+    first = (offset + wp.tid()) * block
     wall = triangles.wall[first_new]
-    slot = cells.start[cell]
-    for item in range(old.start[cell], old.start[cell + 1]):
-        t = old.items[item]
-        if reach.lateral < 0.0 or _is_candidate(triangles, t, wall, cells, center, reach):
-            cells.items[slot] = t
-            slot += 1
-    if reach.lateral >= 0.0:
-        for t in range(first_new, triangles.count):
-            if _is_candidate(triangles, t, wall, cells, center, reach):
+    for cell in range(first, wp.min(first + block, cell_count)):
+        center = cell_center(cells, cell)
+        reach = reaches[cell]
+        slot = cells.start[cell]
+        for item in range(old.start[cell], old.start[cell + 1]):
+            t = old.items[item]
+            if reach.lateral < 0.0 or _is_candidate(triangles, t, wall, cells, center, reach):
                 cells.items[slot] = t
                 slot += 1
-        nearest[cell] = reach.nearest
+        if reach.lateral >= 0.0:
+            for t in range(first_new, triangles.count):
+                if _is_candidate(triangles, t, wall, cells, center, reach):
+                    cells.items[slot] = t
+                    slot += 1
+            nearest[cell] = reach.nearest
 
 
 class CandidateGrid:
@@ -244,9 +250,9 @@ class CandidateGrid:
         counts = wp.empty(cell_count, dtype=wp.int32, device=device)
         reaches = wp.empty(cell_count, dtype=Reach, device=device)
         new = [self.walls.data, first_new, old]
-        launch(_measure_new, cell_count, [*new, self._nearest, reaches, counts], device=device)
+        launch_blocks(_measure_new, cell_count, [*new, self._nearest, reaches, counts], device=device)
         cells = _cells_like(old, counts)
-        launch(_fill_merged, cell_count, [*new, cells, reaches, self._nearest], device=device)
+        launch_blocks(_fill_merged, cell_count, [*new, cells, reaches, self._nearest], device=device)
         self.cells = cells
 
     def state(self) -> tuple:

@@ -75,4 +75,4 @@ def edited_arrays(walker: Walker) -> dict[str, wp.array]:
     arrays = {f"landing {name}": getattr(walker.landings, name) for name in LANDING_DTYPES[walker.domain.dimension]}
     arrays |= {f"point {name}": getattr(walker.points, name) for name in _POINT_ARRAYS}
     arrays |= {"bounds": walker.bounds, "weights": walker.weights, "gradients": walker.gradients}
-    return arrays | {"degrees": walker.degrees}
+    return arrays | {"degrees": walker.degrees, "lowest": walker.lowest}

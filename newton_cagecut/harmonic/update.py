@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from .compact import CPU_BLOCK, ON_FACE, RESUME, REWALK, gather, make_mark_kernel, unmark_walks
+from .compact import ON_FACE, RESUME, REWALK, gather, make_mark_kernel, unmark_walks
 from .domain import DomainChange
-from .launch import launch
+from .launch import launch, launch_blocks
 from .stats import UpdateStats
 from .walker import Walker
 
@@ -50,10 +50,8 @@ def _sorted_walks(
         pieces = kind.bound_pieces(change.polygons, change.directions, device)
         marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
         changes = wp.array(change.key_changes, dtype=wp.uint8, device=device)
-        block = 1 if device.is_cuda else CPU_BLOCK
-        inputs = [block, walk_count, walks, walker.bounds, pieces, walker.points, walker.landings.key]
-        inputs += [changes, marks, touched]
-        launch(make_mark_kernel(kind), -(-walk_count // block), inputs, device=device, smallest_chunk=8)
+        inputs = [walks, walker.bounds, pieces, walker.points, walker.landings.key, changes, marks, touched]
+        launch_blocks(make_mark_kernel(kind), walk_count, inputs, device=device)
         if len(removed):
             work = walker.walks_of(removed)
             launch(unmark_walks, work.size, [work, marks], device=device)

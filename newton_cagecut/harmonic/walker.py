@@ -59,6 +59,7 @@ class Walker:
         device = domain.device
         self.points = empty_points(point_capacity, gradient_mask, device)
         self.degrees = wp.zeros(point_capacity, dtype=wp.int32, device=device)
+        self.lowest = wp.zeros(point_capacity, dtype=float, device=device)
         self._rest = np.zeros((point_capacity, domain.dimension))
         self.gradient_count = int(gradient_mask.sum())
         if point_capacity * options.walks >= 1 << 31:
@@ -260,9 +261,10 @@ class Walker:
             for first in range(0, len(points), batch):
                 inputs = [first, rows, moments, options.walks, first_point, wp.uint32(options.seed), options.degree]
                 inputs += [domain.frame.half_side, vertex_count, self.points]
-                inputs += [domain.faces, self.landings, self.weights, self.gradients, self.degrees]
+                inputs += [domain.faces, self.landings, self.weights, self.gradients, self.degrees, self.lowest]
                 launch(kernel, min(batch, len(points) - first), inputs, device=domain.device, smallest_chunk=16)
             stats.resolved_points += len(points)
+            stats.lowest_weight = float(self.lowest.numpy()[: self.point_count].min())
             if self.cuttable:
                 stats.capped = count_capped(self.landings.key[: self.point_count * options.walks], int(CAPPED))
             else:
