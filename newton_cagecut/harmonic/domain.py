@@ -57,18 +57,27 @@ class Domain:
         distance: "grid" or "all": how the nearest wall is found.
         grid_resolution: Cells of the grid along the cage's longest side.
         device: Where to put them.
+        walls: The walls as edits have left them, of which a cut cage does not tell all; by default those of its faces.
     """
 
     def __init__(
-        self, cage: Cage, *, quads: str, distance: str, device: wp.context.Device, grid_resolution: int = 64
+        self,
+        cage: Cage,
+        *,
+        quads: str,
+        distance: str,
+        device: wp.context.Device,
+        grid_resolution: int = 64,
+        walls: Walls | None = None,
     ) -> None:
         self.cage = cage
         self.quads = quads
         self.distance = distance
         self.device = device
-        self.frame = UnitFrame.of(cage.vertices)
-        self.walls = Walls(self.frame, device=device)
-        self._append(cage.vertices[cage.simplices], cage.face_wall[cage.simplex_face], cage)
+        self.walls = walls or Walls(UnitFrame.of(cage.vertices), device=device)
+        self.frame = self.walls.frame
+        if walls is None:
+            self._append(cage.vertices[cage.simplices], cage.face_wall[cage.simplex_face], cage)
         resolution = grid_resolution if distance == "grid" else 1
         self.grid = CandidateGrid(self.walls, resolution=resolution)
         self.faces = self.faces_before = build_face_tables(cage, self.frame, quads=quads, device=device)

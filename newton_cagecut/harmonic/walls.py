@@ -127,6 +127,19 @@ class Walls:
         self._rows: dict[str, np.ndarray] = {}
         self.data = WallTriangles()
 
+    @classmethod
+    def of_rows(cls, frame: UnitFrame, rows: dict[str, np.ndarray], *, device: wp.context.Device) -> Walls:
+        """Walls that were there before, by their ``rows``."""
+        walls = cls(frame, device=device)
+        walls._rows, walls.triangle_count = rows, len(rows["wall"])
+        walls._upload()
+        return walls
+
+    @property
+    def rows(self) -> dict[str, np.ndarray]:
+        """The triangles on the host: the arrays of ``WallTriangles``, by name."""
+        return self._rows
+
     def append(self, corners: np.ndarray, walls: np.ndarray, normals: np.ndarray, two_sided: np.ndarray) -> range:
         """Append triangles and return their indices.
 
