@@ -4,6 +4,7 @@
 
 from .blade import Blade, BladePlane
 from .cage import Cage
+from .clearance import mesh_clearance
 from .cut import Cut, CutSnapshot
 from .edit import CageEdit
 from .inside import boundary_distances, check_inside
@@ -24,5 +25,6 @@ __all__ = [
     "Wall",
     "boundary_distances",
     "check_inside",
+    "mesh_clearance",
     "triangulate",
 ]

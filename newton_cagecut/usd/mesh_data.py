@@ -4,11 +4,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..cage.triangulate import triangulate
+
+_Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +37,12 @@ class MeshData:
         if all(len(face) == 3 for face in self.faces):
             return np.array(self.faces, dtype=np.int32).reshape(-1, 3)
         return np.concatenate([self._face_triangles(face) for face in self.faces]).astype(np.int32)
+
+    def turned(self, up_axis: str) -> MeshData:
+        """The mesh rotated about x so that this axis, ``"Y"`` or ``"Z"``, points up."""
+        if up_axis == self.up_axis:
+            return self
+        return replace(self, points=self.points @ (_Y_TO_Z.T if up_axis == "Z" else _Y_TO_Z), up_axis=up_axis)
 
     def _face_triangles(self, face: tuple[int, ...]) -> np.ndarray:
         """Return the triangles of one polygon, cut in the plane that fits it best."""

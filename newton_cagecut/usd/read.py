@@ -15,7 +15,6 @@ from ..cage import Cage
 from ..surface import Surface
 from .mesh_data import MeshData, check_mesh
 
-_Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 _SEAM_TOLERANCE = 1e-5  # of texture space: corners of one vertex that agree to this are one texture coordinate
 
 
@@ -56,8 +55,7 @@ def read_mesh(
     points = (points @ transform[:3, :3] + transform[3, :3]) * UsdGeom.GetStageMetersPerUnit(stage)
     stage_axis = str(UsdGeom.GetStageUpAxis(stage))
     uvs = _texture_coordinates(mesh, label, len(points), indices)
-    points = _turn(points, stage_axis, up_axis or stage_axis)
-    return MeshData(points, faces, uvs, mesh.GetPrim().GetName(), up_axis or stage_axis)
+    return MeshData(points, faces, uvs, mesh.GetPrim().GetName(), stage_axis).turned(up_axis or stage_axis)
 
 
 def read_cage(
@@ -129,7 +127,7 @@ def _find_mesh(stage: Usd.Stage, prim_path: str | None) -> UsdGeom.Mesh:
         raise ValueError(f"{label} has {place}; its meshes: {listed}")
     if len(found) > 1:
         names = ", ".join(str(prim.GetPath()) for prim in found)
-        raise ValueError(f"{label} has {len(found)} meshes; choose one with prim_path: {names}")
+        raise ValueError(f"{label} has {len(found)} meshes; choose one by its path (prim_path, --prim): {names}")
     return UsdGeom.Mesh(found[0])
 
 
@@ -157,10 +155,3 @@ def _texture_coordinates(mesh: UsdGeom.Mesh, label: str, point_count: int, indic
             return uvs
     warnings.warn(f"{label}: its texture coordinates do not belong to vertices; they are left out", stacklevel=3)
     return None
-
-
-def _turn(points: np.ndarray, stage_axis: str, up_axis: str) -> np.ndarray:
-    """Rotate points about x from one up axis to the other."""
-    if stage_axis == up_axis:
-        return points
-    return points @ (_Y_TO_Z.T if stage_axis == "Y" else _Y_TO_Z)
