@@ -4,8 +4,9 @@
 """Bounds of whole walks, and their test against new pieces of wall.
 
 A walk is kept as it is when none of its spheres meets the new wall (paper, section 4.1). Its bounding volume holds
-every sphere, the last one included, plus a rounding margin, and is quantised outward. The test is conservative: it may
-send a walk to be walked again for nothing, never the other way round.
+every sphere but the first, the last one included, plus a rounding margin, and is quantised outward. The first sphere is
+the largest as a rule and the same for all walks of a point, so it is tested by itself, once for the point. The test is
+conservative: it may send a walk to be walked again for nothing, never the other way round.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from .compact import ON_FACE, RESUME, REWALK, gather, make_mark_kernel, unmark_walks
+from .compact import ON_FACE, RESUME, REWALK, gather, make_mark_kernel, meet_first_spheres, unmark_walks
 from .domain import DomainChange
 from .launch import launch, launch_blocks
 from .stats import UpdateStats
@@ -50,7 +50,10 @@ def _sorted_walks(
         pieces = kind.bound_pieces(change.polygons, change.directions, device)
         marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
         changes = wp.array(change.key_changes, dtype=wp.uint8, device=device)
-        inputs = [walks, walker.bounds, pieces, walker.points, walker.landings.key, changes, marks, touched]
+        met = wp.zeros(walker.point_count, dtype=wp.uint8, device=device)
+        inputs = [walker.domain.walls.data, change.first_new, walker.points, met]
+        launch(meet_first_spheres, walker.point_count, inputs, device=device)
+        inputs = [walks, walker.bounds, pieces, walker.points, walker.landings.key, changes, met, marks, touched]
         launch_blocks(make_mark_kernel(kind), walk_count, inputs, device=device)
         if len(removed):
             work = walker.walks_of(removed)

@@ -133,7 +133,8 @@ def make_walk_kernel(
                     nearest = nothing_yet()
                     continue
             if wp.static(bounded):
-                extents = bounds_kind.extend(extents, x, radius)
+                if not at_start:  # the first sphere is the point's, and is tested with it
+                    extents = bounds_kind.extend(extents, x, radius)
             if at_start and number == wp.uint32(0):
                 if wp.static(bounded):
                     if points.first_radius[point] != radius:
