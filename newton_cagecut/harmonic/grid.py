@@ -89,7 +89,7 @@ def _measure_cells(
     last = parent.last[parent_cell]
     best = float(1.0e30)
     for item in range(first, last):
-        if triangles.gate[parent.items[item]] < 0:
+        if triangles.rows[parent.items[item]].gate < 0:
             best = wp.min(best, _center_distance(triangles, parent.items[item], center))
     reach = best + cells.diagonal + _MARGIN
     count = int(0)
@@ -116,7 +116,7 @@ def _fill_cells(offset: int, triangles: WallTriangles, parent: GridCells, cells:
 @wp.func
 def _lateral_distance(triangles: WallTriangles, t: int, center: wp.vec3) -> float:
     """Distance within the triangle's plane of a point's projection."""
-    projected = center - triangles.normal[t] * plane_distance(triangles, t, center)
+    projected = center - triangles.rows[t].normal * plane_distance(triangles, t, center)
     return wp.length(projected - closest_point_on_triangle(triangles, t, projected))
 
 
@@ -138,7 +138,9 @@ def _is_candidate(triangles: WallTriangles, t: int, wall: int, cells: GridCells,
     diagonal = cells.diagonal
     if _center_distance(triangles, t, center) > reach.nearest + diagonal + _MARGIN:
         return False
-    return triangles.wall[t] != wall or _lateral_distance(triangles, t, center) <= reach.lateral + diagonal + _LATERAL
+    return (
+        triangles.rows[t].wall != wall or _lateral_distance(triangles, t, center) <= reach.lateral + diagonal + _LATERAL
+    )
 
 
 @wp.func
@@ -146,7 +148,7 @@ def _reach_of_new(
     triangles: WallTriangles, first_new: int, cells: GridCells, cell: int, center: wp.vec3, nearest: float
 ) -> Reach:
     """Least distances with the new triangles; ``lateral`` is negative where none of them reaches the cell."""
-    wall = triangles.wall[first_new]
+    wall = triangles.rows[first_new].wall
     reach = Reach()
     reach.nearest = nearest
     reach.lateral = -1.0
@@ -160,7 +162,7 @@ def _reach_of_new(
                 lateral = wp.min(lateral, _lateral_distance(triangles, t, center))
     if lateral < 1.0e30:
         for item in range(cells.first[cell], cells.last[cell]):
-            if triangles.wall[cells.items[item]] == wall:
+            if triangles.rows[cells.items[item]].wall == wall:
                 lateral = wp.min(lateral, _lateral_distance(triangles, cells.items[item], center))
         reach.lateral = lateral
     return reach
@@ -192,7 +194,7 @@ def _measure_new(
     counts: wp.array[wp.int32],
 ):
     begin = (offset + wp.tid()) * block
-    wall = triangles.wall[first_new]
+    wall = triangles.rows[first_new].wall
     for number in range(begin, wp.min(begin + block, cell_count)):
         cell = _cell_in_blocks(cells, blocks, number)
         reach = Reach()
@@ -228,7 +230,7 @@ def _fill_merged(
 ):
     """Write the lists of the cells that new triangles reach behind all others, and leave those of other cells."""
     begin = (offset + wp.tid()) * block
-    wall = triangles.wall[first_new]
+    wall = triangles.rows[first_new].wall
     for number in range(begin, wp.min(begin + block, cell_count)):
         reach = reaches[number]
         if reach.lateral >= 0.0:

@@ -63,7 +63,7 @@ def nothing_yet() -> Nearest:
 @wp.func
 def is_passed(triangles: WallTriangles, t: int, passed: wp.uint32) -> bool:
     """Whether a triangle belongs to a gate that was passed."""
-    gate = triangles.gate[t]
+    gate = triangles.rows[t].gate
     if gate < 0:
         return False
     return ((passed >> wp.uint32(gate)) & wp.uint32(1)) == wp.uint32(1)
