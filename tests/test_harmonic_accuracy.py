@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cage_shapes import box, tetrahedron
+from cage_shapes import box, star_prism, tetrahedron
 from harmonic_shapes import interior_points, trilinear
 from newton_cagecut.harmonic import HarmonicCoordinates
 
@@ -110,10 +110,9 @@ def test_short_walks_are_counted():
 
 def test_negative_weights_are_reported():
     """The least weight of every point, and that of all in the statistics, is what the weights say."""
-    points = interior_points(box(SIZE), 40, np.random.default_rng(6))
-    coordinates = bake_box(points, 64, 1)
+    points = interior_points(star_prism(), 200, np.random.default_rng(6))
+    coordinates = HarmonicCoordinates(star_prism(), points, 32)
     least = np.minimum(coordinates.weights.min(axis=1), 0.0)
     np.testing.assert_array_equal(coordinates.lowest_weights, least)
     assert coordinates.recompute().lowest_weight == least.min() < 0.0
-    plain = bake_box(points, 64, 1, "none")
-    assert plain.recompute().lowest_weight == 0.0
+    assert HarmonicCoordinates(star_prism(), points, 32, correction="none").recompute().lowest_weight == 0.0
