@@ -27,7 +27,8 @@ def _arrays(coordinates: HarmonicCoordinates) -> dict[str, np.ndarray]:
     arrays |= coordinates.landings | {"degrees": coordinates.degrees}
     arrays |= {"corner": domain.walls.data.corner_0.numpy(), "items": domain.grid.cells.items.numpy()}
     arrays |= {"start": domain.grid.cells.start.numpy(), "nearest": domain.grid._nearest.numpy()}
-    return arrays | {"loops": domain.faces.loop_vertex.numpy(), "position": coordinates._walker.points.position.numpy()}
+    arrays |= {"loops": domain.faces.loop_vertex.numpy(), "position": coordinates._walker.points.position.numpy()}
+    return {name: array.copy() for name, array in arrays.items()}
 
 
 def _assert_same_cage(one: Cage, two: Cage) -> None:
