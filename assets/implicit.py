@@ -32,21 +32,44 @@ def project(field: Field, points: np.ndarray, *, step: float, iterations: int = 
     return points
 
 
-def scatter(field: Field, lower: np.ndarray, upper: np.ndarray, count: int, *, step: float, seed: int) -> np.ndarray:
-    """Return ``count`` random points on the surface, from those of a box that are close to it."""
-    random = np.random.default_rng(seed)
-    points = lower + (upper - lower) * random.random((60 * count, 3))
-    shell = points[np.abs(field(points)) < 0.01 * np.linalg.norm(upper - lower)]
-    if len(shell) < count:
-        raise ValueError(f"only {len(shell)} of {count} points are near the surface: the box is too large for it")
-    return project(field, shell[:count], step=step)
+def even(points: np.ndarray) -> np.ndarray:
+    """Return the same relative spacing for all points."""
+    return np.ones(len(points))
 
 
-def repel(field: Field, points: np.ndarray, *, step: float, iterations: int) -> np.ndarray:
-    """Return ``points`` after ``iterations`` steps of mutual repulsion on the surface."""
+def scatter(
+    field: Field, lower: np.ndarray, upper: np.ndarray, count: int, *, step: float, seed: int, spacing: Field = even
+) -> np.ndarray:
+    """Return ``count`` random points on the surface, from those of a box that are close to it.
+
+    Args:
+        field: Negative inside.
+        lower: Least corner of the box, shape ``(3,)``.
+        upper: Greatest corner of the box, shape ``(3,)``.
+        count: Number of points.
+        step: Of the differences that stand for the field's gradient.
+        seed: Of the random points.
+        spacing: Relative spacing of the points, at least 1.
+    """
+    random, shells, found = np.random.default_rng(seed), [], 0
+    while found < count:
+        points = lower + (upper - lower) * random.random((60 * count, 3))
+        shell = points[np.abs(field(points)) < 0.01 * np.linalg.norm(upper - lower)]
+        shell = shell[random.random(len(shell)) * spacing(shell) ** 2 < 1.0]
+        shell = project(field, shell, step=step)
+        shell = shell[np.abs(field(shell)) < 10.0 * step]
+        if not len(shell):
+            raise ValueError(f"none of {60 * count} points of the box is near the surface: the box is too large for it")
+        shells.append(shell)
+        found += len(shell)
+    return np.concatenate(shells)[:count]
+
+
+def repel(field: Field, points: np.ndarray, *, step: float, iterations: int, spacing: Field = even) -> np.ndarray:
+    """Return ``points`` after ``iterations`` steps of mutual repulsion on the surface, in units of ``spacing``."""
     for _ in range(iterations):
         distance, neighbour = cKDTree(points).query(points, k=16)
-        distance = np.maximum(distance[:, 1:], 1e-9)
+        distance = np.maximum(distance[:, 1:], 1e-9) / spacing(points)[:, None]
         reach = 1.15 * distance[:, 9].mean()
         push = np.clip(1.0 - distance / reach, 0.0, None) ** 2 * reach / distance
         away = points[:, None] - points[neighbour[:, 1:]]
@@ -84,6 +107,38 @@ def restricted_delaunay(field: Field, points: np.ndarray) -> np.ndarray:
     if (uses != 2).any() or len(np.unique(triangles)) != len(points):
         raise ValueError(f"{len(points)} points are too few for this surface: {(uses != 2).sum()} edges are not closed")
     return triangles.astype(np.int32)
+
+
+def mesh_field(
+    field: Field,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    count: int,
+    *,
+    seed: int,
+    step: float = 1e-4,
+    iterations: int = 60,
+    spacing: Field = even,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return ``count`` points on the surface ``field == 0`` and its outward triangles ``(m, 3)``.
+
+    Args:
+        field: Negative inside, roughly the distance near the surface [m].
+        lower: Least corner of a box around the surface [m], shape ``(3,)``.
+        upper: Greatest corner of that box [m], shape ``(3,)``.
+        count: Number of points.
+        seed: Of their first places.
+        step: Of the differences that stand for the field's gradient [m].
+        iterations: Steps in which the points spread.
+        spacing: Relative spacing of the points, at least 1.
+
+    Raises:
+        ValueError: The box is too large for so few points, or the points are too sparse for the surface.
+    """
+    points = scatter(field, np.asarray(lower), np.asarray(upper), count, step=step, seed=seed, spacing=spacing)
+    points = repel(field, points, step=step, iterations=iterations, spacing=spacing)
+    points = project(field, points, step=step)
+    return order_along(points, restricted_delaunay(field, points))
 
 
 def order_along(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

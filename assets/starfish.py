@@ -8,12 +8,10 @@ and 53 planar faces (triangles, quads and a pentagon). Metres, +Z up, about 1 m 
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 
-from assets.implicit import order_along, project, repel, restricted_delaunay, scatter
-from newton_cagecut.usd import write_mesh
+from assets.implicit import mesh_field
+from assets.write import write_asset
 
 VERTEX_COUNT = 8158
 ARM_COUNT = 5
@@ -59,12 +57,7 @@ def tubercles(points: np.ndarray) -> np.ndarray:
 
 def starfish_mesh() -> tuple[np.ndarray, np.ndarray]:
     """Return the points ``(8158, 3)`` [m] and the outward triangles ``(16312, 3)`` of the starfish."""
-    step = 1e-4
-    lower, upper = np.array([-0.55, -0.55, -0.12]), np.array([0.55, 0.55, 0.16])
-    points = scatter(starfish_field, lower, upper, VERTEX_COUNT, step=step, seed=5)
-    points = repel(starfish_field, points, step=step, iterations=60)
-    points = project(starfish_field, points, step=step)
-    return order_along(points, restricted_delaunay(starfish_field, points))
+    return mesh_field(starfish_field, (-0.55, -0.55, -0.12), (0.55, 0.55, 0.16), VERTEX_COUNT, seed=5)
 
 
 def starfish_cage() -> tuple[np.ndarray, list[tuple[int, ...]]]:
@@ -104,15 +97,5 @@ def starfish_cage_faces() -> list[tuple[int, ...]]:
     return faces + middle
 
 
-def main(folder: Path = Path(__file__).parent) -> None:
-    """Write starfish.usdc and starfish_cage.usda.
-
-    Args:
-        folder: Where to.
-    """
-    write_mesh(folder / "starfish.usdc", *starfish_mesh(), name="starfish")
-    write_mesh(folder / "starfish_cage.usda", *starfish_cage(), name="starfish_cage", purpose="guide")
-
-
 if __name__ == "__main__":
-    main()
+    write_asset("starfish", starfish_mesh(), starfish_cage())

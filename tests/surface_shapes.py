@@ -6,31 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from assets.sphere import icosphere
 from newton_cagecut.surface import Surface
-
-_FACES = (
-    "0 11 5 0 5 1 0 1 7 0 7 10 0 10 11 1 5 9 5 11 4 11 10 2 10 7 6 7 1 8 3 9 4 3 4 2 3 2 6 3 6 8 3 8 9 4 9 5 2 4 11 6 "
-    "2 10 8 6 7 9 8 1"
-)
-
-
-def icosphere(level: int) -> tuple[np.ndarray, np.ndarray]:
-    """A unit sphere of 20 * 4**level triangles."""
-    g = 0.5 * (1.0 + np.sqrt(5.0))
-    rows = [[-1, g, 0], [1, g, 0], [-1, -g, 0], [1, -g, 0]]
-    points = np.array([np.roll(row, shift) for shift in range(3) for row in rows])
-    points /= np.linalg.norm(points, axis=1, keepdims=True)
-    triangles = np.array(_FACES.split(), dtype=int).reshape(-1, 3)
-    for _ in range(level):
-        edges = np.sort(np.concatenate([np.roll(triangles, -k, axis=1)[:, :2] for k in range(3)]), axis=1)
-        unique, inverse = np.unique(edges, axis=0, return_inverse=True)
-        middle = points[unique].mean(axis=1)
-        ab, bc, ca = len(points) + inverse.reshape(3, -1)
-        points = np.concatenate([points, middle / np.linalg.norm(middle, axis=1, keepdims=True)])
-        a, b, c = triangles.T
-        corners = [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
-        triangles = np.concatenate([np.stack(part, axis=1) for part in corners])
-    return points, triangles
 
 
 def sphere(level: int = 3, radius: float = 0.45, center=(0.5, 0.5, 0.5)) -> Surface:
