@@ -66,3 +66,36 @@ def vertex_rows(solver: cagecut.SolverCageCut, state: newton.State, field: str =
 def slanted_blade() -> cagecut.Blade:
     """A blade that crosses the box at an angle."""
     return cagecut.Blade([0.45, 0.5, 0.5], [0.1, 1.0, 0.15], [0.2, -0.1, -1.0])
+
+
+def everything(solver: cagecut.SolverCageCut, states) -> dict[str, np.ndarray]:
+    """All arrays that an edit may touch."""
+    body, model = solver.bodies[0], solver.model
+    arrays = {"rest": body.rest, "fixed": body.fixed, "count": body.vertex_count, "mass": body.system.mass}
+    arrays |= {"volumes": body.system.volumes, "flags": model.particle_flags, "particle_mass": model.particle_mass}
+    arrays |= {
+        f"state_{i}_{name}": getattr(s, name) for i, s in enumerate(states) for name in ("particle_q", "particle_qd")
+    }
+    values = {name: array.numpy().copy() for name, array in arrays.items()}
+    coordinates = body.coordinates
+    values |= {
+        "weights": coordinates.weights_array.numpy().copy(),
+        "gradients": coordinates.gradients,
+        **coordinates.landings,
+    }
+    surface = body.surface
+    values |= {
+        name: getattr(surface, name) for name in ("points", "triangles", "triangle_cap", "cap_side", "point_key")
+    }
+    return {
+        **values,
+        "bounds": coordinates.bounds,
+        "loops": np.concatenate(body.cage.faces),
+        "keys": body.cage.face_key,
+    }
+
+
+def assert_same(before: dict[str, np.ndarray], after: dict[str, np.ndarray]) -> None:
+    """Compare all arrays bit for bit."""
+    for name in before:
+        np.testing.assert_array_equal(after[name], before[name], err_msg=name)

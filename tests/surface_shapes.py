@@ -61,6 +61,12 @@ def check_closed(surface: Surface, volume: float) -> None:
     np.testing.assert_allclose(surface.volume, volume, rtol=1e-11)
 
 
+def check_outward(surface: Surface, name: str) -> None:
+    """Assert that no triangle of the original surface was inverted."""
+    facing = np.einsum("ij,ij->i", surface.mesh.face_area_vector, outward(surface, name))
+    assert facing[surface.triangle_cap < 0].min() > -1e-13
+
+
 def check_caps(surface: Surface, plane, wall: int) -> None:
     """Assert that caps lie on the plane, face the right way and have equal areas on both sides."""
     mesh = surface.mesh

@@ -11,31 +11,17 @@ import pytest
 import warp as wp
 
 import newton_cagecut as cagecut
-from solver_scenes import ball, box_cage, corners, make_solver, run, slanted_blade, vertex_rows
-
-
-def everything(solver, states) -> dict[str, np.ndarray]:
-    """All arrays that an edit may touch."""
-    body, model = solver.bodies[0], solver.model
-    arrays = {"rest": body.rest, "fixed": body.fixed, "count": body.vertex_count, "mass": body.system.mass}
-    arrays |= {"volumes": body.system.volumes, "flags": model.particle_flags, "particle_mass": model.particle_mass}
-    arrays |= {
-        f"state_{i}_{name}": getattr(s, name) for i, s in enumerate(states) for name in ("particle_q", "particle_qd")
-    }
-    values = {name: array.numpy().copy() for name, array in arrays.items()}
-    coordinates = body.coordinates
-    values |= {
-        "weights": coordinates.weights_array.numpy().copy(),
-        "gradients": coordinates.gradients,
-        **coordinates.landings,
-    }
-    return {**values, "triangles": np.array(body.surface.triangles), "bounds": coordinates.bounds}
-
-
-def assert_same(before: dict[str, np.ndarray], after: dict[str, np.ndarray]) -> None:
-    """Compare all arrays bit for bit."""
-    for name in before:
-        np.testing.assert_array_equal(after[name], before[name], err_msg=name)
+from solver_scenes import (
+    assert_same,
+    ball,
+    box_cage,
+    corners,
+    everything,
+    make_solver,
+    run,
+    slanted_blade,
+    vertex_rows,
+)
 
 
 def test_cut_keeps_the_deformed_shape():

@@ -142,3 +142,25 @@ def test_curved_cuts_side_by_side_in_the_solver():
     weights = body.coordinates.weights
     body.coordinates.recompute()
     np.testing.assert_array_equal(weights, body.coordinates.weights)
+
+
+def test_turning_twice_in_place():
+    """A cut that turns again before it went on, or after another cut, follows its last direction alone."""
+    across = Blade([0.5, 0.5, 0.8], [1, 0.1, 0], [0, 1, 0.1])
+    surfaces = []
+    for turns in ([[0.3, 0.0, -1.0]], [[-0.8, 0.1, -0.2], [0.5, 0.0, -1.0], [0.3, 0.0, -1.0]]):
+        surface = sphere()
+        cut = Cut(box(), Blade([0.45, 0.5, 0.5], [0, 1, 0], [0, 0, -1]))
+        surface_cut = SurfaceCut(surface, cut.plane, cut.wall)
+        _follow(cut, surface_cut, 0.4, surface.volume)
+        for direction in turns:
+            cut.turn(direction)
+            surface_cut.go_on(cut.plane, cut.wall)
+        other = Cut(cut.cage, across)
+        other_surface = SurfaceCut(surface_cut.surface, other.plane, other.wall)
+        _follow(other, other_surface, 0.6, surface.volume)
+        cut.resume(other.cage)
+        surface_cut.go_on(cut.plane, cut.wall, surface=other_surface.surface)
+        surfaces.append(_follow(cut, surface_cut, 0.7, surface.volume))
+    np.testing.assert_array_equal(surfaces[0].points, surfaces[1].points)
+    np.testing.assert_array_equal(surfaces[0].triangles, surfaces[1].triangles)

@@ -59,23 +59,26 @@ class BodyCut:
 
     def turn(self, direction: np.ndarray) -> None:
         """Turn the blade about its present front line, in the cage's rest frame; see ``Cut.turn``."""
-        cut, surface_cut = copy.copy(self.cut), copy.copy(self._surface_cut)
-        if cut.cage is not self.body.cage:
-            cut.resume(self.body.cage)
-            surface_cut.go_on(cut.plane, cut.wall, surface=self.body.surface, hinged=cut.hinged)
+        cut, surface_cut = self._resumed()
         cut.turn(direction)
         surface_cut.go_on(cut.plane, cut.wall, hinged=cut.hinged)
         self.cut, self._surface_cut = cut, surface_cut
 
+    def _resumed(self) -> tuple[Cut, SurfaceCut]:
+        """Copies of the cuts of cage and surface, gone on to the body as it is."""
+        body, cut, surface_cut = self.body, copy.copy(self.cut), copy.copy(self._surface_cut)
+        if cut.cage is not body.cage:
+            cut.resume(body.cage)
+            surface_cut.go_on(cut.plane, cut.wall, surface=body.surface, hinged=cut.hinged, window=cut.window)
+        return cut, surface_cut
+
     def advance(self, to: float, states: Sequence[newton.State]) -> CutReport:
         """Advance the blade to a depth [m] and carry the body's data over, in the given states too."""
         body = self.body
+        _check_states(body, states)
         seconds: dict[str, float] = {}
         clock = _Clock(seconds)
-        cut, surface_cut = copy.copy(self.cut), copy.copy(self._surface_cut)
-        if cut.cage is not body.cage:
-            cut.resume(body.cage)
-            surface_cut.go_on(cut.plane, cut.wall, surface=body.surface, hinged=cut.hinged)
+        cut, surface_cut = self._resumed()
         edit = cut.advance(to=to)
         clock.lap("topology")
         surface_edit = surface_cut.advance(edit.front) if edit.cage is not edit.before else _no_change(body)
@@ -144,7 +147,8 @@ class _Transfer:
         self._vertices = np.concatenate([edit.created, edit.moved])
         self._vertex_count = edit.cage.vertex_count
         points = edit.cage.vertices[self._vertices]
-        keys = np.where(edit.source_faces >= 0, edit.before.face_key[edit.source_faces], -1)
+        self._on_face = edit.source_faces >= 0
+        keys = np.where(self._on_face, edit.before.face_key[edit.source_faces], -1)
         self._rest = body.to_world(points)
         self._weights = np.zeros((0, edit.before.vertex_count))
         if len(points):
@@ -168,9 +172,23 @@ class _Transfer:
                 change = self._weights @ (rows[:count] - start)
                 rows[self._vertices] = new_rest + change if field == "particle_q" else change
                 array.assign(rows)
-        fixed[self._vertices] = self._weights @ (fixed[:count] != 0) > _HELD
+        fixed[self._vertices] = self._on_face & (self._weights @ (fixed[:count] != 0) > _HELD)
         body.rest.assign(rest)
         body.fixed.assign(fixed)
+
+
+def _check_states(body: CageBody, states: Sequence[newton.State]) -> None:
+    count = body.model.particle_count
+    for number, state in enumerate(states):
+        for name in ("particle_q", "particle_qd"):
+            array = getattr(state, name, None)
+            if array is None:
+                raise TypeError(f"states[{number}] must be a state with particles, got {type(state).__name__}")
+            if array.shape != (count,):
+                raise ValueError(
+                    f"states[{number}].{name} has the shape {array.shape}, the model has {count} particles; pass "
+                    "states of the body's own model"
+                )
 
 
 def _no_change(body: CageBody) -> SurfaceEdit:

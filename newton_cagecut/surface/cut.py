@@ -23,7 +23,7 @@ from .split import cap_triangles, split_triangles
 from .surface import Surface
 
 _ON_FRONT = 1e-10
-_STATE = ("base", "surface", "plane", "wall", "front", "_section", "_numbering", "_tips")
+_STATE = ("base", "surface", "plane", "wall", "front", "_section", "_numbering", "_tips", "_tip_wall")
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +108,8 @@ class SurfaceCut:
         """Coordinate s of the blade in the plane [m]."""
         self._section = section
         self._numbering = Numbering(section)
-        self._tips = np.zeros(0, dtype=np.int64)
+        self._tips = np.zeros(0, dtype=np.int64) if hinge is None else hinge.vertices
+        self._tip_wall = self.wall
 
     def go_on(
         self,
@@ -135,17 +136,17 @@ class SurfaceCut:
         if not hinged:
             self._begin(surface, plane, wall, window=window)
             return
+        front_wall, key = self._tip_wall, surface.triangle_key
         on_front = np.zeros(surface.point_count, dtype=bool)
         on_front[self._tips] = True
-        flat, key = surface.triangles, surface.triangle_key
-        shared = np.isin(np.arange(surface.point_count), flat[key == 2 * self.wall])
-        shared &= np.isin(np.arange(surface.point_count), flat[key == 2 * self.wall + 1])
+        shared = np.isin(np.arange(surface.point_count), surface.triangles[key == 2 * front_wall])
+        shared &= np.isin(np.arange(surface.point_count), surface.triangles[key == 2 * front_wall + 1])
         candidates = np.flatnonzero(shared)
         s = self.plane.coordinates(surface.mesh.vertices[candidates])[:, 1]
         limit = _ON_FRONT * np.ptp(surface.points, axis=0).max()
         on_front[candidates[np.abs(s - self.front) <= limit]] = True
-        self._begin(surface, plane, wall, hinge=Hinge.of(surface.mesh, key, self.wall, on_front))
-        self.front = 0.0
+        self._begin(surface, plane, wall, hinge=Hinge.of(surface.mesh, key, front_wall, on_front))
+        self.front, self._tip_wall = 0.0, front_wall
 
     def advance(self, front: float) -> SurfaceEdit:
         """Open the surface up to the front.
@@ -167,8 +168,8 @@ class SurfaceCut:
         self.front = front
         before = self.surface
         opening = Opening(self._section, self._numbering, front)
-        self._tips = self._numbering.tip[opening.tip_chords]
         if opening.created_count:
+            self._tips, self._tip_wall = self._numbering.tip[opening.tip_chords], self.wall
             self.surface = self._open_surface(opening)
         common = before.point_count
         differs = (before.points != self.surface.points[:common]).any(axis=1)

@@ -16,6 +16,8 @@ import numpy as np
 from ..cage import PolygonMesh, Wall, lifted
 from ..cage.winding import winding_numbers
 
+_CANCELLED = 1e-9
+
 
 _FLAT = 1e-13
 
@@ -183,7 +185,8 @@ class Surface:
         Shape (n, dimension).
 
         A point that lies on several cuts belongs to the piece into which this points. It is minus the sum of the
-        normals at the point, one for the skin and one for each wall, so that slivers do not matter.
+        normals at the point, one for the skin and one for each wall, so that slivers do not matter. Where both sides of
+        a cut meet, at its front and at the borders of a knife's, theirs cancel.
 
         Args:
             points: Point ids, shape (n,).
@@ -196,8 +199,11 @@ class Surface:
         corners = self.points[self.triangles[around]]
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         labels, label = np.unique(self.triangle_cap[around], return_inverse=True)
-        sums = np.zeros((len(points), len(labels), 3))
-        np.add.at(sums, (row[self.triangles[around, corner]], label), normal)
+        sums, sizes = np.zeros((len(points), len(labels), 3)), np.zeros((len(points), len(labels)))
+        where = row[self.triangles[around, corner]], label
+        np.add.at(sums, where, normal)
+        np.add.at(sizes, where, np.linalg.norm(normal, axis=1))
+        sums[np.linalg.norm(sums, axis=2) <= _CANCELLED * sizes] = 0.0
         return _unit(-_unit(sums).sum(axis=1))
 
     def _directions_from_border(self, points: np.ndarray) -> np.ndarray:
