@@ -31,7 +31,8 @@ OUTLINE = {
     "brim": (0.275, 0.81),
     "crown": (0.15, 0.985),
 }
-# How far the cage reaches to the front and to the back there [m]; at the armpit the chest's plane tells, at the palm the arm's
+# How far the cage reaches to the front and to the back there [m]; the chest's plane tells at the armpit, the arm's at
+# the palm
 DEPTHS = {
     "crotch": (0.275, 0.22),
     "instep": (0.185, 0.11),

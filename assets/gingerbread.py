@@ -98,10 +98,11 @@ def _band(line: np.ndarray, half_width: float) -> np.ndarray:
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     left = half_width * np.stack([-along[:, 1], along[:, 0]], axis=1)
     turn = np.linspace(0.0, np.pi, 9)[1:-1, None]
-    ends = [
-        line[i] + sign * (np.sin(turn) * half_width * along[i] - np.cos(turn) * left[i]) for i, sign in ((-1, 1), (0, -1))
-    ]
-    return _evenly(np.concatenate([line - left, ends[0], (line + left)[::-1], ends[1]]))
+    outward = half_width * along
+    last, first = (
+        line[i] + sign * (np.sin(turn) * outward[i] - np.cos(turn) * left[i]) for i, sign in ((-1, 1.0), (0, -1.0))
+    )
+    return _evenly(np.concatenate([line - left, last, (line + left)[::-1], first]))
 
 
 def _evenly(loop: np.ndarray) -> np.ndarray:

@@ -135,9 +135,7 @@ class CutScene:
             require(body.surface.closed or body.is_plane, f"{body.label}: the surface is closed")
             sums = body.coordinates.weights.sum(axis=1)
             require(np.abs(sums - 1.0).max() < 1e-4, f"{body.label}: the weights of each point sum to 1")
-            require(
-                _moves_as_pieces(body), f"{body.label}: each piece of the surface moves with one piece of the cage"
-            )
+            require(_moves_as_pieces(body), f"{body.label}: each piece of the surface moves with one piece of the cage")
             pieces += body.surface.mesh.component_count
         done = self.schedule.current
         if not self.schedule.active:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from examples.cutting import PlannedCut
+from examples.table import table_lines
 from newton_cagecut import Cut, CutReport, HarmonicCoordinates, SolverCageCut
 from newton_cagecut.solver.body import CageBody
 
@@ -102,7 +103,7 @@ class Timings:
         """Return all that was measured as text."""
         cuts = [cut for cut in self._cuts if cut.reports]
         lines = [*self._scene_lines(), ""]
-        lines += _rows(
+        lines += table_lines(
             ["means a step", "steps", "re-walk", "on-face", *(f"{name} ms" for name in UPDATE_PARTS.values())],
             [
                 [
@@ -116,7 +117,7 @@ class Timings:
             ],
         )
         lines += [""]
-        lines += _rows(
+        lines += table_lines(
             ["means a step", "update ms", *(f"{name} ms" for name in OTHER_PARTS)],
             [
                 [cut.name, f"{cut.mean_update():.1f}", *(f"{cut.mean_other(p):.1f}" for p in OTHER_PARTS)]
@@ -178,14 +179,3 @@ def compile_kernels(body: CageBody, planned: PlannedCut) -> None:
         coordinates.boundary_weights(edit.cage.vertices[:1], np.asarray(body.cage.face_key[:1]), walks=8)
         coordinates.update(edit)
         coordinates.set_points(np.arange(1), points[:1])
-
-
-def _rows(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return a table as lines, the first column to the left, the others to the right."""
-    widths = [max(map(len, column)) for column in zip(head, *rows)]
-    return [
-        "  ".join(
-            cell.ljust(width) if k == 0 else cell.rjust(width) for k, (cell, width) in enumerate(zip(row, widths))
-        )
-        for row in (head, *rows)
-    ]

@@ -3,9 +3,9 @@
 
 """Cages with harmonic coordinates that can be cut while they move, as a solver for Newton.
 
-The rooms, from the bottom up: ``cage``, ``harmonic``, ``surface``, ``elastic``, ``usd``, ``solver``. The names here are
-the public ones. The method is "Fast Cutting of Cage Based Deformation with Walk on Spheres"; bit-identical updates
-and harmonic control variates go past it.
+The rooms, from the bottom up: ``cage``, ``harmonic``, ``surface``, ``elastic``, ``usd``, ``wrap``,
+``solver``. The names here are the public ones. The method is "Fast Cutting of Cage Based Deformation with Walk on
+Spheres"; bit-identical updates and harmonic control variates go past it.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .harmonic import HarmonicCoordinates, UpdateStats
     from .solver import Capacity, CutReport, SolverCageCut, add_cage_body
     from .surface import Surface
+    from .wrap import wrap_cage
 
 _ROOMS = {
     "Blade": "cage",
@@ -33,6 +34,7 @@ _ROOMS = {
     "Surface": "surface",
     "UpdateStats": "harmonic",
     "add_cage_body": "solver",
+    "wrap_cage": "wrap",
 }
 
 __all__ = [
@@ -48,6 +50,7 @@ __all__ = [
     "Surface",
     "UpdateStats",
     "add_cage_body",
+    "wrap_cage",
 ]
 
 

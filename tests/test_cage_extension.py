@@ -13,7 +13,7 @@ from cage_shapes import SHAPES, box, check_manifold, hexagonal_prism, prism, tet
 from cut_sequences import CAGES, crossings
 from extension_checks import check_edit
 from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
-from newton_cagecut.cage.intersection import edge_distances
+from newton_cagecut.cage.nearest import edge_distances
 from plane_shapes import PLANES, outline, rectangle, ring, square
 
 EVERY = SHAPES | PLANES | {"collinear_prism": CAGES["collinear_prism"]}

@@ -106,3 +106,14 @@ def test_short_walks_are_counted():
     capped = np.count_nonzero(coordinates.landings["key"] >> 30)
     assert stats.capped == capped > 0
     np.testing.assert_allclose(coordinates.weights @ coordinates.cage.vertices, points, atol=1e-5)
+
+
+def test_negative_weights_are_reported():
+    """The least weight of every point, and that of all in the statistics, is what the weights say."""
+    points = interior_points(box(SIZE), 40, np.random.default_rng(6))
+    coordinates = bake_box(points, 64, 1)
+    least = np.minimum(coordinates.weights.min(axis=1), 0.0)
+    np.testing.assert_array_equal(coordinates.lowest_weights, least)
+    assert coordinates.recompute().lowest_weight == least.min() < 0.0
+    plain = bake_box(points, 64, 1, "none")
+    assert plain.recompute().lowest_weight == 0.0

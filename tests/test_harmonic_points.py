@@ -162,7 +162,7 @@ def test_set_points_refuses():
         ([0], good * np.nan, "not finite"),
         ([4], good, "gaps"),
         ([3], good, "gaps"),
-        ([-1], good, "gaps"),
+        ([-1], good, "no point"),
         ([0, 0], np.repeat(good, 2, axis=0), "twice"),
         ([0, 1], good, "shape"),
         ([2, 3, 4], np.repeat(good, 3, axis=0), "point_capacity"),
@@ -187,3 +187,113 @@ def test_bake_in_a_cut_cage():
         coordinates.update(cut.advance(to=depth))
         assert_reproduces(coordinates, points)
     assert coordinates.cage.component_count == 2
+
+
+@pytest.mark.parametrize("depth", [None, 0.6])
+def test_removed_points_leave_the_others_alone(depth):
+    """Removed points weigh nothing; all others keep their bits, through a cut and a recompute too."""
+    cage = box()
+    points = interior_points(cage, 20, np.random.default_rng(6))
+    full, fewer = bake(points, cage), bake(points, cage)
+    cut = middle_cut(cage)
+    if depth is not None:
+        edit = cut.advance(to=depth)
+        full.update(edit)
+        fewer.update(edit)
+    gone = np.array([0, 7, 19])
+    fewer.remove_points(gone)
+    kept = np.setdiff1d(np.arange(20), gone)
+    np.testing.assert_array_equal(fewer.removed_points, gone)
+    assert fewer.point_count == 20
+    for later in (0.8, 1.1):
+        before, after = per_point(full, 20), per_point(fewer, 20)
+        assert_identical({name: before[name][kept] for name in before}, {name: after[name][kept] for name in before})
+        assert not any(after[name][gone].any() for name in ("weights", "gradients", "degrees", "key"))
+        edit = cut.advance(to=later)
+        full.update(edit)
+        stats = fewer.update(edit)
+        assert stats.walk_count == stats.checked == 17 * WALKS
+        assert stats.reused >= 0
+        updated = snapshot(fewer)
+        assert fewer.recompute().rewalked == 17 * WALKS
+        assert_identical(updated, snapshot(fewer))
+
+
+def test_removed_numbers_are_used_again():
+    """A point put where another was removed is what it had been from the start; it follows cuts again."""
+    cage = box()
+    points = interior_points(cage, 12, np.random.default_rng(7))
+    expected = bake(points, cage)
+    other = points.copy()
+    other[[2, 5]] = other[[5, 2]]
+    coordinates = bake(other, cage, point_capacity=13)
+    cut = middle_cut(cage)
+    edit = cut.advance(to=0.4)
+    coordinates.remove_points([5, 2])
+    for one in (expected, coordinates):
+        one.update(edit)
+    coordinates.set_points([5, 2], points[[5, 2]])
+    assert len(coordinates.removed_points) == 0
+    assert_identical(snapshot(coordinates), snapshot(expected))
+    edit = cut.advance(to=1.1)
+    for one in (expected, coordinates):
+        one.update(edit)
+    assert_identical(snapshot(coordinates), snapshot(expected))
+
+
+def test_all_points_removed():
+    """With every point removed there is nothing left to walk, and edits are taken all the same."""
+    cage = box()
+    coordinates = bake(INSIDE, cage)
+    coordinates.remove_points([0, 1])
+    stats = coordinates.update(middle_cut(cage).advance(to=0.5))
+    assert stats.walk_count == stats.rewalked == coordinates.recompute().rewalked == 0
+    assert not coordinates.weights.any()
+
+
+def test_removal_is_undone_by_a_snapshot():
+    """Restoring a snapshot brings removed points back, and removes those again that were removed then."""
+    coordinates = bake(interior_points(box(), 10, np.random.default_rng(8)))
+    coordinates.remove_points([3])
+    known, kept = snapshot(coordinates), coordinates.snapshot()
+    coordinates.remove_points([0, 9])
+    coordinates.set_points([3], INSIDE[:1])
+    coordinates.restore(kept)
+    np.testing.assert_array_equal(coordinates.removed_points, [3])
+    assert_identical(known, snapshot(coordinates))
+
+
+def test_obstacle_where_a_point_was_removed():
+    """An obstacle may cover a point once it is removed."""
+    cage = box()
+    coordinates = bake(INSIDE, cage)
+    small = box((0.1, 0.1, 0.1))
+    edit = cage.insert(Cage(small.vertices - small.vertices.mean(axis=0) + INSIDE[0], small.faces))
+    with pytest.raises(ValueError, match="remove the points first"):
+        coordinates.update(edit)
+    coordinates.remove_points([0])
+    coordinates.update(edit)
+    updated = snapshot(coordinates)
+    coordinates.recompute()
+    assert_identical(updated, snapshot(coordinates))
+
+
+def test_remove_points_refuses():
+    """What is no point, was removed, is there twice or is no number is refused; nothing has changed then."""
+    coordinates = bake(INSIDE)
+    coordinates.remove_points([1])
+    before = snapshot(coordinates)
+    for indices, error, text in (
+        ([0, 2], ValueError, "no point 2"),
+        ([0, 1], ValueError, "no point 1"),
+        ([0, 0], ValueError, "point 0 is given twice"),
+        ([-1], ValueError, "-1 is no point"),
+        ([[0]], ValueError, r"shape \(n,\)"),
+        ([0.0], TypeError, "whole numbers"),
+    ):
+        with pytest.raises(error, match=text):
+            coordinates.remove_points(np.array(indices))
+    np.testing.assert_array_equal(coordinates.removed_points, [1])
+    assert_identical(before, snapshot(coordinates))
+    with pytest.raises(ValueError, match="cuttable=False"):
+        bake(INSIDE, cuttable=False).remove_points([0])

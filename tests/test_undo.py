@@ -25,8 +25,8 @@ def _arrays(coordinates: HarmonicCoordinates) -> dict[str, np.ndarray]:
     domain = coordinates.domain
     arrays = {"weights": coordinates.weights, "gradients": coordinates.gradients, "bounds": coordinates.bounds}
     arrays |= coordinates.landings | {"degrees": coordinates.degrees}
-    arrays |= {"corner": domain.walls.data.corner_0.numpy(), "items": domain.grid.cells.items.numpy()}
-    arrays |= {"start": domain.grid.cells.start.numpy(), "nearest": domain.grid._nearest.numpy()}
+    arrays |= {"corner": domain.walls.data.rows.numpy()["corner_0"], "items": domain.grid.cells.items.numpy()}
+    arrays |= {"first": domain.grid.cells.first.numpy(), "nearest": domain.grid._nearest.numpy()}
     arrays |= {"loops": domain.faces.loop_vertex.numpy(), "position": coordinates._walker.points.position.numpy()}
     return {name: array.copy() for name, array in arrays.items()}
 

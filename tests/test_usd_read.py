@@ -160,7 +160,7 @@ def test_several_meshes_are_named():
     """Without a path, several meshes are an error that names them."""
     stage = stage_with_box()
     add_box(stage, "/World/crate")
-    with pytest.raises(ValueError, match="2 meshes; choose one with prim_path: /World/box, /World/crate"):
+    with pytest.raises(ValueError, match="2 meshes; choose one by its path .*: /World/box, /World/crate"):
         read_mesh(stage)
 
 

@@ -4,6 +4,7 @@
 
 from .blade import Blade, BladePlane
 from .cage import Cage
+from .clearance import mesh_clearance
 from .cut import Cut, CutSnapshot
 from .edit import CageEdit
 from .inside import boundary_distances, check_inside
@@ -26,5 +27,6 @@ __all__ = [
     "boundary_distances",
     "check_inside",
     "lifted",
+    "mesh_clearance",
     "triangulate",
 ]

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .intersection import edge_distances, edge_pierces, near_pairs, point_touches
+from .intersection import edge_pierces, near_pairs, point_touches
+from .nearest import edge_distances
 from .polygon_mesh import PolygonMesh
 
 if TYPE_CHECKING:

@@ -15,7 +15,6 @@ import numpy as np
 from .polygon_mesh import PolygonMesh
 
 _CHUNK = 1 << 20
-_PARALLEL = 1e-14
 
 
 def check_simple_faces(mesh: PolygonMesh, corner: np.ndarray, tolerance: float) -> None:
@@ -158,23 +157,6 @@ def _lies_over(points: np.ndarray, corners: np.ndarray, normal: np.ndarray, tole
         height = np.einsum("ij,ij->i", np.cross(normal, along), points - u)
         inside &= height >= -tolerance * np.linalg.norm(along, axis=1)
     return inside
-
-
-def edge_distances(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Distance between segments, pair by pair, shape (pair_count,) [m].
-
-    Args:
-        one: Ends of the first segments, none without length, shape (pair_count, 2, dimension) [m].
-        other: Ends of the second segments, none without length, shape (pair_count, 2, dimension) [m].
-    """
-    u, v, w = one[:, 1] - one[:, 0], other[:, 1] - other[:, 0], other[:, 0] - one[:, 0]
-    uu, vv, uv, uw, vw = (np.einsum("ij,ij->i", *pair) for pair in ((u, u), (v, v), (u, v), (u, w), (v, w)))
-    determinant = uu * vv - uv * uv
-    skew = determinant > _PARALLEL * uu * vv
-    s = np.clip(np.where(skew, uw * vv - vw * uv, 0.0) / np.where(skew, determinant, 1.0), 0.0, 1.0)
-    t = np.clip((s * uv - vw) / vv, 0.0, 1.0)
-    s = np.clip((t * uv + uw) / uu, 0.0, 1.0)
-    return np.linalg.norm(w + t[:, None] * v - s[:, None] * u, axis=1)
 
 
 def check_nesting(vertices: np.ndarray, component: np.ndarray, volumes: np.ndarray, winding) -> None:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .intersection import edge_distances, near_pairs
+from .intersection import near_pairs
+from .nearest import edge_distances
 from .polygon_mesh import PolygonMesh
 
 

@@ -4,8 +4,9 @@
 """Bounds of whole walks, and their test against new pieces of wall.
 
 A walk is kept as it is when none of its spheres meets the new wall (paper, section 4.1). Its bounding volume holds
-every sphere, the last one included, plus a rounding margin, and is quantised outward. The test is conservative: it may
-send a walk to be walked again for nothing, never the other way round.
+every sphere but the first, the last one included, plus a rounding margin, and is quantised outward. The first sphere is
+the largest as a rule and the same for all walks of a point, so it is tested by itself, once for the point. The test is
+conservative: it may send a walk to be walked again for nothing, never the other way round.
 """
 
 from __future__ import annotations
@@ -51,6 +52,8 @@ def _make(kind: str, dimension: int) -> BoundsKind:
         return make_dop(sides, dimension, wp.uint16)
     if kind == "dop18":
         return make_dop(np.concatenate([sides, diagonals]), dimension, wp.uint16)
-    # Scaled so that the unit frame's box fills the same range along every axis: a byte has no level to give away.
+    # At 8 bits a plane a walk takes fewer bytes than the 18-DOP's 36, and on starfish cuts 5 to 13 % more of them are
+    # flagged than at 16. Scaled so that the unit frame's box fills the range along every axis: a byte has no level to
+    # give away.
     axes = np.concatenate([2.0 * sides, diagonals, _CORNERS * (2.0 / 3.0)])
     return make_dop(axes, dimension, wp.uint8)

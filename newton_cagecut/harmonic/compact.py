@@ -8,15 +8,13 @@ from functools import cache
 import numpy as np
 import warp as wp
 
-from .bounds_kind import BoundsKind
+from .bounds_kind import ROUNDING, BoundsKind
 from .landing import CAPPED, KEY_MASK, PASSED
 from .points import QueryPoints
 from .walk import ON_WALL
+from .walls import WallTriangles, closest_point_on_triangle
 
 wp.set_module_options({"enable_backward": False})
-
-CPU_BLOCK = 4096
-"""Walks that one thread marks on a CPU, where a thread costs more than a walk; on CUDA it is one."""
 
 KEPT = wp.constant(wp.uint8(0))
 REWALK = wp.constant(wp.uint8(1))
@@ -28,6 +26,21 @@ CHANGED_KEY = wp.constant(wp.uint8(1))
 """A wall's side of which faces changed."""
 RETIRED_KEY = wp.constant(wp.uint8(2))
 """A wall's side that bounds the cage no longer."""
+
+
+@wp.kernel(enable_backward=False)
+def meet_first_spheres(
+    offset: int, triangles: WallTriangles, first_new: int, points: QueryPoints, met: wp.array[wp.uint8]
+):
+    """Mark the points whose first sphere, which is that of all their walks, new walls enter."""
+    point = offset + wp.tid()
+    x = points.position[point]
+    reach = points.first_radius[point] * (1.0 + ROUNDING) + ROUNDING
+    result = wp.uint8(0)
+    for t in range(first_new, triangles.count):
+        if wp.length_sq(x - closest_point_on_triangle(triangles, t, x)) <= reach * reach:
+            result = wp.uint8(1)
+    met[point] = result
 
 
 @cache
@@ -49,6 +62,7 @@ def make_mark_kernel(bounds_kind: BoundsKind) -> wp.Kernel:
         points: QueryPoints,
         keys: wp.array[wp.int32],
         key_changes: wp.array[wp.uint8],
+        met: wp.array[wp.uint8],
         marks: wp.array[wp.uint8],
         touched: wp.array[wp.uint8],
     ):
@@ -60,6 +74,7 @@ def make_mark_kernel(bounds_kind: BoundsKind) -> wp.Kernel:
         first = (offset + wp.tid()) * block
         for walk in range(first, wp.min(first + block, walk_count)):
             mark = KEPT
+            point = walk // walks
             key = keys[walk]
             change = key_changes[key & KEY_MASK]
             # An evaluated landing touches its point if its boundary value changes, which landing finds out; a walk that
@@ -68,16 +83,24 @@ def make_mark_kernel(bounds_kind: BoundsKind) -> wp.Kernel:
                 mark = ON_FACE
             elif change == RETIRED_KEY:
                 mark = REWALK
-                if (key & (PASSED | CAPPED)) == 0 and points.first_radius[walk // walks] >= ON_WALL:
+                if (key & (PASSED | CAPPED)) == 0 and points.first_radius[point] >= ON_WALL:
                     mark = RESUME
-            if int(bounds[pieces.first_component, walk]) <= pieces.first_limit:
-                if bounds_kind.overlaps_any(bounds, walk, pieces):
-                    mark = REWALK
-                    if change == CHANGED_KEY:
-                        touched[walk // walks] = wp.uint8(1)
+            again = met[point] != wp.uint8(0)
+            if not again and int(bounds[pieces.first_component, walk]) <= pieces.first_limit:
+                again = bounds_kind.overlaps_any(bounds, walk, pieces)
+            if again:
+                mark = REWALK
+                if change == CHANGED_KEY:
+                    touched[point] = wp.uint8(1)
             marks[walk] = mark
 
     return mark_walks
+
+
+@wp.kernel(enable_backward=False)
+def unmark_walks(offset: int, work: wp.array[wp.int32], marks: wp.array[wp.uint8]):
+    """Keep the walks listed in ``work``, those of removed points, as they are."""
+    marks[work[offset + wp.tid()]] = KEPT
 
 
 @wp.kernel(enable_backward=False)

@@ -5,19 +5,21 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 
 import numpy as np
 import warp as wp
 
 from ..cage import Cage, CageEdit, check_inside
-from .compact import CPU_BLOCK, ON_FACE, RESUME, REWALK, gather, make_mark_kernel
-from .domain import Domain, DomainChange
+from .checks import checked_indices, checked_keys, checked_points
+from .domain import Domain
 from .landing import LANDING_DTYPES
-from .launch import launch
 from .options import WalkOptions
 from .snapshot import CoordinatesSnapshot
 from .stats import UpdateStats
+from .storage import load_walker, save_walker
+from .update import run_concerned
 from .walker import Walker
 
 
@@ -78,8 +80,8 @@ class HarmonicCoordinates:
         else:
             self.domain = Domain(cage, quads=quads, distance=distance, device=wp.get_device(device))
         self._cage = self.domain.cage
-        points = _checked_points(points, self.domain.dimension)
-        keys = self._checked_keys(point_keys, len(points))
+        points = checked_points(points, self.domain.dimension)
+        keys = checked_keys(point_keys, len(points), len(self._cage.walls))
         check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
         self._walker = Walker(
             self.domain,
@@ -99,8 +101,13 @@ class HarmonicCoordinates:
 
     @property
     def point_count(self) -> int:
-        """Number of points."""
+        """Number of points, those that were removed included: rows of the weights."""
         return self._walker.point_count
+
+    @property
+    def removed_points(self) -> np.ndarray:
+        """Numbers of the points that were removed, ascending; :meth:`set_points` can use them again."""
+        return self._walker.removed_points
 
     @property
     def walks(self) -> int:
@@ -134,6 +141,11 @@ class HarmonicCoordinates:
         Shape (point_count,).
         """
         return self._walker.degrees.numpy()[: self.point_count].copy()
+
+    @property
+    def lowest_weights(self) -> np.ndarray:
+        """Least weight of each point, 0 where none is negative: controls can overshoot; shape (point_count,)."""
+        return self._walker.lowest.numpy()[: self.point_count].copy()
 
     @property
     def landings(self) -> dict[str, np.ndarray]:
@@ -183,7 +195,7 @@ class HarmonicCoordinates:
         self._cage = edit.cage
         if edit.is_empty:
             return stats
-        self._run_concerned(change, stats)
+        run_concerned(walker, change, stats)
         return stats
 
     def recompute(self) -> UpdateStats:
@@ -218,11 +230,58 @@ class HarmonicCoordinates:
         snapshot.restore()
         self._cage = snapshot.cage
 
-    def set_points(self, indices: np.ndarray, points: np.ndarray, point_keys: np.ndarray | None = None) -> UpdateStats:
-        """Move points, or add points at the end, and walk for them alone.
+    def save(self, path: str | os.PathLike) -> None:
+        """Write the coordinates to a file, walks and cuts so far included, for :meth:`load`.
 
         Args:
-            indices: Points to set, shape (n,); new ones continue the count without gaps.
+            path: Where to write it; a file that is there is replaced once the new one is whole.
+
+        Raises:
+            OSError: The file cannot be written; one that was there is as it was.
+            ValueError: There is no walk cache, or a shared domain has gone on to another cage.
+        """
+        walker = self._cache_of("save")
+        if self.domain.cage is not self._cage:
+            raise ValueError(
+                "save: the shared domain holds a later cage than these coordinates; recompute() them first"
+            )
+        save_walker(walker, path)
+
+    @classmethod
+    def load(
+        cls,
+        path: str | os.PathLike,
+        cage: Cage,
+        points: np.ndarray,
+        *,
+        device: wp.context.Devicelike = None,
+        **options: object,
+    ) -> HarmonicCoordinates:
+        """Read coordinates that were saved; edits go on from there, bit for bit as if they had never been away.
+
+        Args:
+            path: Where the file is.
+            cage: The cage that they were for when they were saved; after a cut that is ``cut.cage``.
+            points: Rest positions of the points [m], shape (point_count, dimension).
+            device: Where to put them; Warp's current device by default.
+            **options: Options that they must have been made with, such as the seed; the others are taken as they are.
+
+        Raises:
+            OSError: There is no such file, or it cannot be read.
+            TypeError: There is no such option.
+            ValueError: The file is cut short, damaged, of another version, or of another cage, other points or other
+                options, which the text names; or its walks do not repeat themselves on this device.
+        """
+        coordinates = cls.__new__(cls)
+        walker = load_walker(path, cage, points, device=wp.get_device(device), options=options)
+        coordinates._walker, coordinates.domain, coordinates._cage = walker, walker.domain, cage
+        return coordinates
+
+    def set_points(self, indices: np.ndarray, points: np.ndarray, point_keys: np.ndarray | None = None) -> UpdateStats:
+        """Move points, put new ones where some were removed, or add them at the end, and walk for them alone.
+
+        Args:
+            indices: Points to set, shape (n,); those beyond the count continue it without gaps.
             points: Rest positions [m], shape (n, 3).
             point_keys: Key 2 * wall + side for points on a wall, else -1, shape (n,).
 
@@ -231,20 +290,40 @@ class HarmonicCoordinates:
                 there are more points than were reserved. Nothing has changed then.
         """
         walker = self._cache_of("set_points")
-        points = _checked_points(points, self.domain.dimension)
-        indices = self._checked_indices(indices, len(points))
-        keys = self._checked_keys(point_keys, len(points))
+        points = checked_points(points, self.domain.dimension)
+        indices = checked_indices(indices, len(points))
+        added = np.sort(indices[indices >= self.point_count])
+        if not np.array_equal(added, self.point_count + np.arange(len(added))):
+            raise ValueError(f"indices: there are {self.point_count} points; new ones must follow without gaps")
+        keys = checked_keys(point_keys, len(points), len(self.domain.cage.walls))
         walker.require_points(int(indices.max(initial=-1)) + 1)
         check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
         walker.place(indices, points, keys)
         stats = self._new_stats()
         stats.rewalked = len(indices) * self.walks
-        work = (indices[:, None] * self.walks + np.arange(self.walks)).reshape(-1).astype(np.int32)
-        work = wp.array(work, dtype=wp.int32, device=self.domain.device)
-        walker.walk(work, stats)
-        walker.land(work, stats)
-        walker.resolve(indices, stats)
+        walker.run_points(indices, stats)
         return stats
+
+    def remove_points(self, indices: np.ndarray) -> None:
+        """Remove points: from now on their weights and gradients are 0, and nothing is walked for them.
+
+        The others keep their numbers, by which walks draw their randomness, and so every bit.
+
+        Args:
+            indices: Points to remove, shape (n,).
+
+        Raises:
+            TypeError: The indices are not whole numbers.
+            ValueError: An index is of no point, is there twice, or was removed before. Nothing has changed then.
+        """
+        walker = self._cache_of("remove_points")
+        indices = checked_indices(indices)
+        gone = indices[(indices >= self.point_count) | np.isin(indices, self.removed_points)]
+        if len(gone):
+            raise ValueError(
+                f"remove_points: there is no point {gone[0]}; there are {self.point_count}, less removed ones"
+            )
+        walker.remove(indices)
 
     def boundary_weights(self, points: np.ndarray, point_keys: np.ndarray, *, walks: int = 1024) -> np.ndarray:
         """Weights of points on the cage's walls, on the faces as they are.
@@ -260,8 +339,8 @@ class HarmonicCoordinates:
         Raises:
             ValueError: A key is of no wall.
         """
-        count = len(_checked_points(points, self.domain.dimension))
-        self._checked_keys(point_keys, count, lowest=0)
+        count = len(checked_points(points, self.domain.dimension))
+        checked_keys(point_keys, count, len(self.domain.cage.walls), lowest=0)
         return self.weights_at(points, point_keys, walks=walks)
 
     def weights_at(self, points: np.ndarray, point_keys: np.ndarray | None = None, *, walks: int = 1024) -> np.ndarray:
@@ -290,74 +369,10 @@ class HarmonicCoordinates:
         )
         return coordinates.weights
 
-    def _run_concerned(self, change: DomainChange, stats: UpdateStats) -> None:
-        walker, device = self._walker, self.domain.device
-        walk_count = self.point_count * self.walks
-        with stats.time("check", device):
-            kind = walker.bounds_kind
-            pieces = kind.bound_pieces(change.polygons, change.directions, device)
-            marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
-            touched = wp.zeros(self.point_count, dtype=wp.uint8, device=device)
-            changes = wp.array(change.key_changes, dtype=wp.uint8, device=device)
-            block = 1 if device.is_cuda else CPU_BLOCK
-            inputs = [block, walk_count, self.walks, walker.bounds, pieces, walker.points, walker.landings.key]
-            inputs += [changes, marks, touched]
-            launch(make_mark_kernel(kind), -(-walk_count // block), inputs, device=device, smallest_chunk=8)
-            rewalk, on_face, resume = (gather(marks, int(mark)) for mark in (REWALK, ON_FACE, RESUME))
-        stats.checked = walk_count
-        stats.rewalked, stats.on_face, stats.resumed = rewalk.size, on_face.size, resume.size
-        walker.walk(rewalk, stats, touched=touched)
-        walker.land(rewalk, stats, part="rewalk")
-        if resume.size:
-            walker.walk(resume, stats, touched=touched, resumed=True)
-            walker.land(resume, stats, part="resume")
-        walker.land(on_face, stats, part="on_face", touched=touched)
-        concerned = touched.numpy() != 0
-        if walker.options.correction != "none":
-            concerned |= self.degrees == 0  # An affine correction is spread over all vertices of a piece.
-        walker.resolve(np.flatnonzero(concerned), stats)
-
     def _cache_of(self, wanted: str) -> Walker:
         if not self._walker.cuttable:
             raise ValueError(f"{wanted}: these coordinates were made with cuttable=False and keep no walk cache")
         return self._walker
 
     def _new_stats(self) -> UpdateStats:
-        return UpdateStats(self.walks * self.point_count)
-
-    def _checked_keys(self, keys: np.ndarray | None, count: int, *, lowest: int = -1) -> np.ndarray:
-        if keys is None:
-            return np.full(count, -1, np.int32)
-        keys = np.asarray(keys)
-        if keys.shape != (count,):
-            raise ValueError(f"point_keys must have the shape ({count},), one key a point, not {keys.shape}")
-        highest = 2 * len(self.domain.cage.walls) - 1
-        bad = np.flatnonzero((keys < lowest) | (keys > highest))
-        if len(bad):
-            raise ValueError(
-                f"point {bad[0]} has the key {keys[bad[0]]}; the keys of the cage's walls are 0 to {highest}"
-                + (", -1 is for points inside" if lowest < 0 else "")
-            )
-        return keys.astype(np.int32)
-
-    def _checked_indices(self, indices: np.ndarray, count: int) -> np.ndarray:
-        indices = np.asarray(indices, dtype=np.int64)
-        if indices.shape != (count,):
-            raise ValueError(f"indices must have the shape ({count},), one index a point, not {indices.shape}")
-        unique = np.unique(indices)
-        if len(unique) < count:
-            raise ValueError("indices: the same point is given twice")
-        added = unique[unique >= self.point_count]
-        if (unique < 0).any() or not np.array_equal(added, self.point_count + np.arange(len(added))):
-            raise ValueError(f"indices: there are {self.point_count} points; new ones must follow without gaps")
-        return indices
-
-
-def _checked_points(points: np.ndarray, dimension: int) -> np.ndarray:
-    points = np.asarray(points, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != dimension:
-        raise ValueError(f"points must have the shape (n, {dimension}), not {points.shape}")
-    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
-    if len(bad):
-        raise ValueError(f"point {bad[0]} is not finite: {points[bad[0]]}")
-    return points
+        return UpdateStats(self.walks * (self.point_count - len(self.removed_points)))

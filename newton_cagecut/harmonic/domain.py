@@ -27,12 +27,14 @@ class DomainChange:
     Args:
         polygons: New pieces of wall in the unit frame, shape (k, 3) each.
         directions: Directions along which each of them is thin, shape (2, 3) each.
+        first_new: First of the new wall triangles.
         key_changes: What becomes of landings with key 2 * wall + side, shape (2 * wall_count,); see ``compact.py``.
         regrouped: Whether the pieces are other ones than before.
     """
 
     polygons: list[np.ndarray]
     directions: list[np.ndarray]
+    first_new: int
     key_changes: np.ndarray
     regrouped: bool
 
@@ -57,18 +59,27 @@ class Domain:
         distance: "grid" or "all": how the nearest wall is found.
         grid_resolution: Cells of the grid along the cage's longest side.
         device: Where to put them.
+        walls: The walls as edits have left them, of which a cut cage does not tell all; by default those of its faces.
     """
 
     def __init__(
-        self, cage: Cage, *, quads: str, distance: str, device: wp.context.Device, grid_resolution: int = 64
+        self,
+        cage: Cage,
+        *,
+        quads: str,
+        distance: str,
+        device: wp.context.Device,
+        grid_resolution: int = 64,
+        walls: Walls | None = None,
     ) -> None:
         self.cage = cage
         self.quads = quads
         self.distance = distance
         self.device = device
-        self.frame = UnitFrame.of(cage.vertices)
-        self.walls = Walls(self.frame, device=device)
-        self._append(cage.vertices[cage.simplices], cage.face_wall[cage.simplex_face], cage)
+        self.walls = walls or Walls(UnitFrame.of(cage.vertices), device=device)
+        self.frame = self.walls.frame
+        if walls is None:
+            self._append(cage.vertices[cage.simplices], cage.face_wall[cage.simplex_face], cage)
         resolution = grid_resolution if distance == "grid" else 1
         self.grid = CandidateGrid(self.walls, resolution=resolution)
         self.faces = self.faces_before = build_face_tables(cage, self.frame, quads=quads, device=device)
@@ -118,6 +129,7 @@ class Domain:
             raise ValueError(
                 f"the cage has been extended {MOST_GATES} times, more than walks can tell apart; make new coordinates"
             )
+        first_new = self.walls.triangle_count
         if len(edit.retired_walls):
             self._append(edit.swept_simplices, edit.swept_simplex_wall, edit.cage)
             self.walls.retire(edit.retired_walls)
@@ -130,7 +142,7 @@ class Domain:
                 self.grid.merge(first)
         self.faces_before = self.faces
         self.faces = build_face_tables(edit.cage, self.frame, quads=self.quads, device=self.device)
-        change = self._change(edit)
+        change = self._change(edit, first_new)
         self.cage = edit.cage
         self._last = (edit, change)
         return change
@@ -155,7 +167,7 @@ class Domain:
         two_sided = np.array([wall.two_sided for wall in cage.walls])[walls]
         self.walls.append(corners, walls, normals, two_sided)
 
-    def _change(self, edit: CageEdit) -> DomainChange:
+    def _change(self, edit: CageEdit, first_new: int) -> DomainChange:
         polygons = [lifted(self.frame.to_unit(polygon)) for polygon in edit.swept]
         normals = [lifted(edit.cage.walls[wall].normal) for wall in edit.swept_wall]
         along = [_directions(polygon, normal) for polygon, normal in zip(polygons, normals)]
@@ -167,7 +179,7 @@ class Domain:
         changed |= changed.any(axis=1, keepdims=True)
         changes = np.where(changed, np.uint8(CHANGED_KEY), np.uint8(UNCHANGED_KEY))
         changes[edit.retired_walls] = np.uint8(RETIRED_KEY)
-        return DomainChange(polygons, along, changes.reshape(-1), regrouped)
+        return DomainChange(polygons, along, first_new, changes.reshape(-1), regrouped)
 
 
 def _directions(polygon: np.ndarray, normal: np.ndarray) -> np.ndarray:

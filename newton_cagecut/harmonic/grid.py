@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from .launch import launch
+from .launch import launch, launch_blocks
 from .walls import Walls, WallTriangles, closest_point_on_triangle, plane_distance
 
 wp.set_module_options({"enable_backward": False})
@@ -29,16 +29,23 @@ _LATERAL = wp.constant(2.0e-3)
 
 _COARSEST = 4
 
+_BLOCK_SIDE = wp.constant(4)
+"""Cells along the side of a block; new walls are merged into the blocks that they can reach."""
+
+_MOST_GROWTH = 4
+"""Size of all lists, in sizes of what was built, above which those that are out of date are dropped."""
+
 
 @wp.struct
 class GridCells:
-    """Cells of a uniform grid; cell (i, j, k) holds items[start[cell] : start[cell + 1]]."""
+    """Cells of a uniform grid; cell (i, j, k) holds items[first[cell] : last[cell]]."""
 
     low: wp.vec3
     size: float
     diagonal: float
     shape: wp.vec3i
-    start: wp.array[wp.int32]
+    first: wp.array[wp.int32]
+    last: wp.array[wp.int32]
     items: wp.array[wp.int32]
 
 
@@ -78,11 +85,11 @@ def _measure_cells(
     cell = offset + wp.tid()
     center = cell_center(cells, cell)
     parent_cell = cell_of(parent, center)
-    first = parent.start[parent_cell]
-    last = parent.start[parent_cell + 1]
+    first = parent.first[parent_cell]
+    last = parent.last[parent_cell]
     best = float(1.0e30)
     for item in range(first, last):
-        if triangles.gate[parent.items[item]] < 0:
+        if triangles.rows[parent.items[item]].gate < 0:
             best = wp.min(best, _center_distance(triangles, parent.items[item], center))
     reach = best + cells.diagonal + _MARGIN
     count = int(0)
@@ -99,8 +106,8 @@ def _fill_cells(offset: int, triangles: WallTriangles, parent: GridCells, cells:
     center = cell_center(cells, cell)
     parent_cell = cell_of(parent, center)
     reach = nearest[cell] + cells.diagonal + _MARGIN
-    slot = cells.start[cell]
-    for item in range(parent.start[parent_cell], parent.start[parent_cell + 1]):
+    slot = cells.first[cell]
+    for item in range(parent.first[parent_cell], parent.last[parent_cell]):
         if _center_distance(triangles, parent.items[item], center) <= reach:
             cells.items[slot] = parent.items[item]
             slot += 1
@@ -109,7 +116,7 @@ def _fill_cells(offset: int, triangles: WallTriangles, parent: GridCells, cells:
 @wp.func
 def _lateral_distance(triangles: WallTriangles, t: int, center: wp.vec3) -> float:
     """Distance within the triangle's plane of a point's projection."""
-    projected = center - triangles.normal[t] * plane_distance(triangles, t, center)
+    projected = center - triangles.rows[t].normal * plane_distance(triangles, t, center)
     return wp.length(projected - closest_point_on_triangle(triangles, t, projected))
 
 
@@ -131,7 +138,9 @@ def _is_candidate(triangles: WallTriangles, t: int, wall: int, cells: GridCells,
     diagonal = cells.diagonal
     if _center_distance(triangles, t, center) > reach.nearest + diagonal + _MARGIN:
         return False
-    return triangles.wall[t] != wall or _lateral_distance(triangles, t, center) <= reach.lateral + diagonal + _LATERAL
+    return (
+        triangles.rows[t].wall != wall or _lateral_distance(triangles, t, center) <= reach.lateral + diagonal + _LATERAL
+    )
 
 
 @wp.func
@@ -139,7 +148,7 @@ def _reach_of_new(
     triangles: WallTriangles, first_new: int, cells: GridCells, cell: int, center: wp.vec3, nearest: float
 ) -> Reach:
     """Least distances with the new triangles; ``lateral`` is negative where none of them reaches the cell."""
-    wall = triangles.wall[first_new]
+    wall = triangles.rows[first_new].wall
     reach = Reach()
     reach.nearest = nearest
     reach.lateral = -1.0
@@ -152,16 +161,31 @@ def _reach_of_new(
                 reach.nearest = wp.min(reach.nearest, distance)
                 lateral = wp.min(lateral, _lateral_distance(triangles, t, center))
     if lateral < 1.0e30:
-        for item in range(cells.start[cell], cells.start[cell + 1]):
-            if triangles.wall[cells.items[item]] == wall:
+        for item in range(cells.first[cell], cells.last[cell]):
+            if triangles.rows[cells.items[item]].wall == wall:
                 lateral = wp.min(lateral, _lateral_distance(triangles, cells.items[item], center))
         reach.lateral = lateral
     return reach
 
 
+@wp.func
+def _cell_in_blocks(cells: GridCells, blocks: wp.array[wp.vec3i], number: int) -> int:
+    """Cell of a running number over all cells of some blocks; -1 where a block reaches out of the grid."""
+    corner = blocks[number // wp.static(_BLOCK_SIDE**3)]
+    i = corner[0] + (number // wp.static(_BLOCK_SIDE**2)) % _BLOCK_SIDE
+    j = corner[1] + (number // _BLOCK_SIDE) % _BLOCK_SIDE
+    k = corner[2] + number % _BLOCK_SIDE
+    if i >= cells.shape[0] or j >= cells.shape[1] or k >= cells.shape[2]:
+        return -1
+    return (i * cells.shape[1] + j) * cells.shape[2] + k
+
+
 @wp.kernel(enable_backward=False)
 def _measure_new(
     offset: int,
+    block: int,
+    cell_count: int,
+    blocks: wp.array[wp.vec3i],
     triangles: WallTriangles,
     first_new: int,
     cells: GridCells,
@@ -169,49 +193,77 @@ def _measure_new(
     reaches: wp.array[Reach],
     counts: wp.array[wp.int32],
 ):
-    cell = offset + wp.tid()
-    center = cell_center(cells, cell)
-    reach = _reach_of_new(triangles, first_new, cells, cell, center, nearest[cell])
-    reaches[cell] = reach
-    count = cells.start[cell + 1] - cells.start[cell]
-    if reach.lateral >= 0.0:
+    begin = (offset + wp.tid()) * block
+    wall = triangles.rows[first_new].wall
+    for number in range(begin, wp.min(begin + block, cell_count)):
+        cell = _cell_in_blocks(cells, blocks, number)
+        reach = Reach()
+        reach.lateral = -1.0
+        center = cell_center(cells, cell)
+        if cell >= 0:
+            reach = _reach_of_new(triangles, first_new, cells, cell, center, nearest[cell])
+        reaches[number] = reach
         count = int(0)
-        wall = triangles.wall[first_new]
-        for item in range(cells.start[cell], cells.start[cell + 1]):
-            if _is_candidate(triangles, cells.items[item], wall, cells, center, reach):
-                count += 1
-        for t in range(first_new, triangles.count):
-            if _is_candidate(triangles, t, wall, cells, center, reach):
-                count += 1
-    counts[cell] = count
+        if reach.lateral >= 0.0:
+            for item in range(cells.first[cell], cells.last[cell]):
+                if _is_candidate(triangles, cells.items[item], wall, cells, center, reach):
+                    count += 1
+            for t in range(first_new, triangles.count):
+                if _is_candidate(triangles, t, wall, cells, center, reach):
+                    count += 1
+        counts[number] = count
 
 
 @wp.kernel(enable_backward=False)
 def _fill_merged(
     offset: int,
+    block: int,
+    cell_count: int,
+    blocks: wp.array[wp.vec3i],
     triangles: WallTriangles,
     first_new: int,
+    ends: wp.array[wp.int32],
     old: GridCells,
     cells: GridCells,
     reaches: wp.array[Reach],
     nearest: wp.array[float],
 ):
+    """Write the lists of the cells that new triangles reach behind all others, and leave those of other cells."""
+    begin = (offset + wp.tid()) * block
+    wall = triangles.rows[first_new].wall
+    for number in range(begin, wp.min(begin + block, cell_count)):
+        reach = reaches[number]
+        if reach.lateral >= 0.0:
+            cell = _cell_in_blocks(cells, blocks, number)
+            center = cell_center(cells, cell)
+            slot = old.items.shape[0]
+            if number > 0:
+                slot += ends[number - 1]
+            cells.first[cell] = slot
+            for item in range(old.first[cell], old.last[cell]):
+                t = old.items[item]
+                if _is_candidate(triangles, t, wall, cells, center, reach):
+                    cells.items[slot] = t
+                    slot += 1
+            for t in range(first_new, triangles.count):
+                if _is_candidate(triangles, t, wall, cells, center, reach):
+                    cells.items[slot] = t
+                    slot += 1
+            cells.last[cell] = slot
+            nearest[cell] = reach.nearest
+
+
+@wp.kernel(enable_backward=False)
+def _count_cells(offset: int, cells: GridCells, counts: wp.array[wp.int32]):
     cell = offset + wp.tid()
-    center = cell_center(cells, cell)
-    reach = reaches[cell]
-    wall = triangles.wall[first_new]
-    slot = cells.start[cell]
-    for item in range(old.start[cell], old.start[cell + 1]):
-        t = old.items[item]
-        if reach.lateral < 0.0 or _is_candidate(triangles, t, wall, cells, center, reach):
-            cells.items[slot] = t
-            slot += 1
-    if reach.lateral >= 0.0:
-        for t in range(first_new, triangles.count):
-            if _is_candidate(triangles, t, wall, cells, center, reach):
-                cells.items[slot] = t
-                slot += 1
-        nearest[cell] = reach.nearest
+    counts[cell] = cells.last[cell] - cells.first[cell]
+
+
+@wp.kernel(enable_backward=False)
+def _copy_cells(offset: int, old: GridCells, cells: GridCells):
+    cell = offset + wp.tid()
+    for item in range(old.last[cell] - old.first[cell]):
+        cells.items[cells.first[cell] + item] = old.items[old.first[cell] + item]
 
 
 class CandidateGrid:
@@ -230,7 +282,7 @@ class CandidateGrid:
     @property
     def byte_count(self) -> int:
         """Bytes on the device."""
-        return 4 * (self.cells.start.size + self.cells.items.size + self._nearest.size)
+        return 4 * (2 * self.cells.first.size + self.cells.items.size + self._nearest.size)
 
     def rebuild(self) -> None:
         """Index all walls anew, over the box that they take now: after gates have opened a way out of the old one."""
@@ -238,24 +290,38 @@ class CandidateGrid:
 
     def merge(self, first_new: int) -> None:
         """Add the triangles from ``first_new`` on, all of one wall, to the cells that they can reach."""
-        old = self.cells
-        cell_count = old.start.size - 1
-        device = self.walls.device
+        old, device = self.cells, self.walls.device
+        blocks = self._reachable_blocks(first_new)
+        if not len(blocks):
+            return
+        cell_count = len(blocks) * _BLOCK_SIDE**3
         counts = wp.empty(cell_count, dtype=wp.int32, device=device)
         reaches = wp.empty(cell_count, dtype=Reach, device=device)
-        new = [self.walls.data, first_new, old]
-        launch(_measure_new, cell_count, [*new, self._nearest, reaches, counts], device=device)
-        cells = _cells_like(old, counts)
-        launch(_fill_merged, cell_count, [*new, cells, reaches, self._nearest], device=device)
-        self.cells = cells
+        new = [wp.array(blocks, dtype=wp.vec3i, device=device), self.walls.data, first_new]
+        launch_blocks(_measure_new, cell_count, [*new, old, self._nearest, reaches, counts], device=device)
+        wp.utils.array_scan(counts, counts, inclusive=True)
+        cells = _copied(old, int(counts[-1:].numpy()[0]))
+        launch_blocks(_fill_merged, cell_count, [*new, counts, old, cells, reaches, self._nearest], device=device)
+        self.cells = cells if cells.items.size <= _MOST_GROWTH * self._built_size else _compacted(cells)
+
+    def _reachable_blocks(self, first_new: int) -> np.ndarray:
+        """First cells of the blocks in which new triangles may be nearest somewhere, shape (block_count, 3)."""
+        low, high = self.walls.box(first_new)
+        size, half = self.cells.size, 0.5 * _BLOCK_SIDE * self.cells.size
+        corner = np.stack(np.unravel_index(np.arange(self._farthest.size), self._farthest.shape), axis=1) * _BLOCK_SIDE
+        center = np.array(list(self.cells.low)) + size * corner + half
+        away = np.linalg.norm(np.maximum(np.maximum(low - center, center - high), 0.0), axis=1)
+        reach = self._farthest.reshape(-1) + self.cells.diagonal + 3.0**0.5 * half + 1.0e-3
+        return corner[away <= reach].astype(np.int32)
 
     def state(self) -> tuple:
         """The grid as it is: merging replaces the cells, and writes to the distances, of which this has a copy."""
-        return self.cells, wp.clone(self._nearest)
+        return self.cells, wp.clone(self._nearest), self._built_size, self._farthest
 
     def restore(self, state: tuple) -> None:
         """Forget the walls that were merged since a state."""
-        self.cells, self._nearest = state[0], wp.clone(state[1])
+        self.cells, nearest, self._built_size, self._farthest = state
+        self._nearest = wp.clone(nearest)
 
     def _build(self) -> None:
         device = self.walls.device
@@ -267,9 +333,19 @@ class CandidateGrid:
             counts = wp.empty(cell_count, dtype=wp.int32, device=device)
             self._nearest = wp.empty(cell_count, dtype=float, device=device)
             launch(_measure_cells, cell_count, [self.walls.data, parent, cells, self._nearest, counts], device=device)
-            cells = _cells_like(cells, counts)
+            cells = _with_counts(cells, counts)
             launch(_fill_cells, cell_count, [self.walls.data, parent, cells, self._nearest], device=device)
             self.cells = parent = cells
+        self._built_size = self.cells.items.size
+        self._farthest = _block_maxima(self._nearest.numpy().reshape(list(self.cells.shape)))
+
+
+def _block_maxima(values: np.ndarray) -> np.ndarray:
+    """Greatest value in each block of cells."""
+    padding = [(0, -count % _BLOCK_SIDE) for count in values.shape]
+    padded = np.pad(values, padding)
+    i, j, k = (count // _BLOCK_SIDE for count in padded.shape)
+    return padded.reshape(i, _BLOCK_SIDE, j, _BLOCK_SIDE, k, _BLOCK_SIDE).max(axis=(1, 3, 5))
 
 
 def _levels(resolution: int) -> list[int]:
@@ -293,24 +369,48 @@ def _uniform_cells(box: list[np.ndarray], resolution: int, device: wp.context.De
     cells.size = size
     cells.diagonal = size * dimension**0.5
     cells.shape = wp.vec3i(*shape.tolist())
-    cells.start = wp.zeros(1, dtype=wp.int32, device=device)
-    cells.items = wp.zeros(1, dtype=wp.int32, device=device)
     return cells
 
 
 def _single_cell(box: list[np.ndarray], triangle_count: int, device: wp.context.Device) -> GridCells:
     cells = _uniform_cells(box, 1, device)
     cells.shape = wp.vec3i(1, 1, 1)
-    cells.start = wp.array([0, triangle_count], dtype=wp.int32, device=device)
+    cells.first = wp.array([0], dtype=wp.int32, device=device)
+    cells.last = wp.array([triangle_count], dtype=wp.int32, device=device)
     cells.items = wp.array(np.arange(triangle_count, dtype=np.int32), device=device)
     return cells
 
 
-def _cells_like(cells: GridCells, counts: wp.array) -> GridCells:
-    """The same cells with empty lists of the given lengths."""
+def _same_box(cells: GridCells) -> GridCells:
     result = GridCells()
     result.low, result.size, result.diagonal, result.shape = cells.low, cells.size, cells.diagonal, cells.shape
-    result.start = wp.zeros(counts.size + 1, dtype=wp.int32, device=counts.device)
-    wp.utils.array_scan(counts, result.start[1:], inclusive=True)
-    result.items = wp.empty(int(result.start[-1:].numpy()[0]), dtype=wp.int32, device=counts.device)
+    return result
+
+
+def _with_counts(cells: GridCells, counts: wp.array) -> GridCells:
+    """The same cells with empty lists of the given lengths."""
+    result = _same_box(cells)
+    ends = wp.zeros(counts.size + 1, dtype=wp.int32, device=counts.device)
+    wp.utils.array_scan(counts, ends[1:], inclusive=True)
+    result.first, result.last = ends[:-1], ends[1:]
+    result.items = wp.empty(int(ends[-1:].numpy()[0]), dtype=wp.int32, device=counts.device)
+    return result
+
+
+def _copied(cells: GridCells, more: int) -> GridCells:
+    """A copy of cells and their lists, with room for more items."""
+    result = _same_box(cells)
+    result.first, result.last = wp.clone(cells.first), wp.clone(cells.last)
+    result.items = wp.empty(cells.items.size + more, dtype=wp.int32, device=cells.items.device)
+    wp.copy(result.items, cells.items, count=cells.items.size)
+    return result
+
+
+def _compacted(cells: GridCells) -> GridCells:
+    """The same lists without what lies between them."""
+    device = cells.items.device
+    counts = wp.empty(cells.first.size, dtype=wp.int32, device=device)
+    launch(_count_cells, counts.size, [cells, counts], device=device)
+    result = _with_counts(cells, counts)
+    launch(_copy_cells, counts.size, [cells, result], device=device)
     return result

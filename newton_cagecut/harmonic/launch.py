@@ -17,6 +17,8 @@ import warp as wp
 
 _CHUNKS_PER_CORE = 8
 _SMALLEST_CHUNK = 512
+_BLOCK = 1024
+"""Elements that one thread of a CPU takes where starting a thread costs more than an element."""
 _pool: ThreadPoolExecutor | None = None
 
 
@@ -61,6 +63,20 @@ def launch(
     for end in chunk_results:
         if progress is not None:
             progress(end / count)
+
+
+def launch_blocks(kernel: wp.Kernel, count: int, inputs: list, *, device: wp.Device) -> None:
+    """Run a kernel for many cheap elements: on a CPU each of its threads loops over a block of them.
+
+    Args:
+        kernel: Kernel whose first arguments are the index of the chunk's first block, the elements of a block, and
+            ``count``; a thread takes the elements from its block's first to the next block's, or to ``count``.
+        count: Number of elements.
+        inputs: The kernel's other arguments.
+        device: Where to run.
+    """
+    block = 1 if device.is_cuda else _BLOCK
+    launch(kernel, -(-count // block), [block, count, *inputs], device=device, smallest_chunk=8)
 
 
 def _core_count() -> int:

@@ -63,7 +63,7 @@ def nothing_yet() -> Nearest:
 @wp.func
 def is_passed(triangles: WallTriangles, t: int, passed: wp.uint32) -> bool:
     """Whether a triangle belongs to a gate that was passed."""
-    gate = triangles.gate[t]
+    gate = triangles.rows[t].gate
     if gate < 0:
         return False
     return ((passed >> wp.uint32(gate)) & wp.uint32(1)) == wp.uint32(1)
@@ -90,7 +90,7 @@ def make_nearest(*, distance: str, gated: bool) -> wp.Function:
         triangles: WallTriangles, cells: GridCells, x: wp.vec3, best: Nearest, passed: wp.uint32
     ) -> Nearest:
         cell = cell_of(cells, x)
-        for item in range(cells.start[cell], cells.start[cell + 1]):
+        for item in range(cells.first[cell], cells.last[cell]):
             best = offered(triangles, cells.items[item], x, best, passed)
         return best
 

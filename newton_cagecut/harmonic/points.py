@@ -8,13 +8,19 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
+INSIDE = -1
+"""Key of a point that lies on no wall."""
+
+REMOVED = -2
+"""Key of a point that was removed: its number is free."""
+
 
 @wp.struct
 class QueryPoints:
     """Points whose coordinates are wanted, shape (point_capacity,) each.
 
     ``position`` is in the unit frame. ``key`` is 2 * wall + side for a point on a wall, whose walks end where they
-    start, and -1 for a point inside. ``piece`` is that of the cage, -1 on a wall. ``gradient_row`` is the point's
+    start, else INSIDE or REMOVED. ``piece`` is that of the cage, -1 on a wall. ``gradient_row`` is the point's
     row among the gradients, -1 without. ``first_radius`` is the distance to the walls, measured by the first walk.
     """
 
@@ -31,7 +37,7 @@ def empty_points(capacity: int, gradient_mask: np.ndarray, device: wp.context.De
     rows[np.flatnonzero(gradient_mask)] = np.arange(int(gradient_mask.sum()))
     points = QueryPoints()
     points.position = wp.zeros(capacity, dtype=wp.vec3, device=device)
-    points.key = wp.full(capacity, -1, dtype=wp.int32, device=device)
+    points.key = wp.full(capacity, INSIDE, dtype=wp.int32, device=device)
     points.piece = wp.zeros(capacity, dtype=wp.int32, device=device)
     points.gradient_row = wp.array(rows, dtype=wp.int32, device=device)
     points.first_radius = wp.zeros(capacity, dtype=float, device=device)

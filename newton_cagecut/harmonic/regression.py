@@ -19,8 +19,12 @@ wp.set_module_options({"enable_backward": False})
 _PIVOT = wp.constant(wp.float64(1.0e-9))
 _MOST_INFLATION = wp.constant(wp.float64(4.0))
 """Variance of a fit at p, relative to that of a mean, above which the landings do not determine it."""
+_MOST_LEVERAGE = wp.constant(wp.float64(0.999))
 _ZERO = wp.constant(wp.float64(0.0))
 _ONE = wp.constant(wp.float64(1.0))
+
+FAR_COUNT = 4
+"""Walks of a point that are kept as the candidates for the greatest leverage: the farthest of every fourth."""
 
 
 class Regression(NamedTuple):
@@ -29,6 +33,7 @@ class Regression(NamedTuple):
     Args:
         Gram: Matrix type of the sums of products of polynomials.
         Moments: Struct of a batch's sums, shape (slots, vertices).
+        Far: Matrix type of the polynomials at the farthest landings, a row each.
         factor: (gram, count) -> LDL^T: L below the diagonal, 1 / D on it, 0 there where a polynomial depends on others.
         back_substitute: (factor, z, count) -> solution of L^T x = D^-1 z for the leading polynomials.
         choose_degree: Forward-substitutes all boundary functions and chooses the degree; see the function.
@@ -37,6 +42,7 @@ class Regression(NamedTuple):
 
     Gram: type
     Moments: object
+    Far: type
     factor: wp.Function
     back_substitute: wp.Function
     choose_degree: wp.Function
@@ -52,6 +58,7 @@ def make_regression(dimension: int) -> Regression:
     """
     size, Features, _, count_of_degree = make_polynomials(dimension)
     Gram = wp.types.matrix(shape=(size, size), dtype=wp.float64)
+    Far = wp.types.matrix(shape=(FAR_COUNT, size), dtype=wp.float64)
 
     @wp.struct
     class Moments:
@@ -103,17 +110,8 @@ def make_regression(dimension: int) -> Regression:
         return z
 
     @wp.func
-    def choose_degree(
-        factor: Gram, moments: Moments, slot: int, vertex_count: int, walks: int, max_degree: int, squares: wp.float64
-    ) -> int:
-        """Forward-substitute the boundary functions and choose the degree of least estimated squared error.
-
-        With the factor of the highest degree, the residual of every lower one is a partial sum. The estimate is
-        residual variance times the estimator's inflation (the sum of its squared walk weights), both for the
-        polynomials used. The degree is 0 where not even a linear fit is determined: next to a wall, when a few
-        landings off it, and hardly off it, would be extrapolated to p.
-        """
-        count = count_of_degree(max_degree)
+    def explain(factor: Gram, moments: Moments, slot: int, vertex_count: int, count: int) -> Features:
+        """Forward-substitute the boundary functions; what each polynomial explains of all of them together."""
         explained = Features()
         for j in range(vertex_count):
             right = moments.value[slot, j]
@@ -121,9 +119,36 @@ def make_regression(dimension: int) -> Regression:
                 z = forward_substitute(factor, right, count)
                 moments.value[slot, j] = z
                 explained += wp.cw_mul(z, z)
+        return explained
+
+    @wp.func
+    def choose_degree(
+        factor: Gram,
+        moments: Moments,
+        slot: int,
+        vertex_count: int,
+        walks: int,
+        max_degree: int,
+        squares: wp.float64,
+        far: Far,
+    ) -> int:
+        """Forward-substitute the boundary functions and choose the degree of least estimated squared error.
+
+        With the factor of the highest degree, the residual of every lower one is a partial sum. The estimate is
+        residual variance times the sum of the squared walk weights a_k, both for the polynomials used, with a_k^2
+        divided by (1 - h_k)^3 where a far landing has the leverage h_k: a fit that goes after few landings looks better
+        than it is (as in the jackknife, which divides by the square). The degree is 0 where not even a linear fit is
+        determined: next to a wall, when a few landings off it, and hardly off it, would be extrapolated to p.
+        """
+        count = count_of_degree(max_degree)
+        explained = explain(factor, moments, slot, vertex_count, count)
         unit = Features()
         unit[0] = _ONE
         unit = forward_substitute(factor, unit, count)
+        for c in range(wp.static(FAR_COUNT)):
+            far[c] = forward_substitute(factor, far[c], count)
+        leverage = wp.vec4d()
+        weight = wp.vec4d()
         residual = squares
         inflation = _ZERO
         best_degree = int(0)
@@ -134,9 +159,16 @@ def make_regression(dimension: int) -> Regression:
             for i in range(first, last):
                 residual -= explained[i] * factor[i, i]
                 inflation += unit[i] * unit[i] * factor[i, i]
+                for c in range(wp.static(FAR_COUNT)):
+                    leverage[c] = leverage[c] + far[c, i] * far[c, i] * factor[i, i]
+                    weight[c] = weight[c] + far[c, i] * unit[i] * factor[i, i]
             first = last
             freedom = walks - last
-            error = wp.max(residual, _ZERO) * inflation / wp.float64(wp.max(freedom, 1))
+            spread = inflation
+            for c in range(wp.static(FAR_COUNT)):
+                rest = _ONE - wp.min(leverage[c], _MOST_LEVERAGE)
+                spread += weight[c] * weight[c] * (_ONE / (rest * rest * rest) - _ONE)
+            error = wp.max(residual, _ZERO) * spread / wp.float64(wp.max(freedom, 1))
             determined = inflation * wp.float64(walks) <= _MOST_INFLATION
             if determined and (degree == 1 or (degree > 1 and freedom > 2 * last and error < best_error)):
                 best_error = error
@@ -151,4 +183,4 @@ def make_regression(dimension: int) -> Regression:
                 flat = True
         return flat
 
-    return Regression(Gram, Moments, factor_gram, back_substitute, choose_degree, is_flat)
+    return Regression(Gram, Moments, Far, factor_gram, back_substitute, choose_degree, is_flat)

@@ -24,7 +24,7 @@ from .landing import landing_type, point_functions
 from .points import QueryPoints
 from .polynomials import make_polynomials
 from .random import make_direction
-from .regression import make_regression
+from .regression import FAR_COUNT, make_regression
 
 wp.set_module_options({"enable_backward": False})
 
@@ -45,7 +45,7 @@ def make_resolve_kernel(*, dimension: int, correction: str, gradients: bool) -> 
     """
     harmonic = correction == "harmonic"
     feature_count, Features, evaluate, count_of_degree = make_polynomials(dimension)
-    Gram, Moments, factor_gram, back_substitute, choose_degree, is_flat = make_regression(dimension)
+    Gram, Moments, Far, factor_gram, back_substitute, choose_degree, is_flat = make_regression(dimension)
     Landings = landing_type(dimension)
     to_space = point_functions(dimension)[0]
     landing_value = make_landing_value(dimension)
@@ -70,6 +70,7 @@ def make_resolve_kernel(*, dimension: int, correction: str, gradients: bool) -> 
         weights: wp.array2d[float],
         weight_gradients: wp.array2d[wp.vec3],
         degrees: wp.array[wp.int32],
+        lowest: wp.array[float],
     ):
         slot = offset + wp.tid()
         point = rows[first_row + slot]
@@ -81,6 +82,8 @@ def make_resolve_kernel(*, dimension: int, correction: str, gradients: bool) -> 
         flux_x = Features()
         flux_y = Features()
         flux_z = Features()
+        far = Far()
+        far_squared = wp.vec4d()
         squares = _ZERO
         with_gradient = bool(False)
         if wp.static(gradients):
@@ -92,7 +95,8 @@ def make_resolve_kernel(*, dimension: int, correction: str, gradients: bool) -> 
             mean = wp.vec3d()
             for i in range(value.count):
                 mean += value.weight[i] * (tables.rest[value.vertex[i]] - origin)
-            features = evaluate(mean, wp.vec3d(to_space(landings.point[walk])) - origin)
+            landed = wp.vec3d(to_space(landings.point[walk])) - origin
+            features = evaluate(mean, landed)
             for i in range(value.count):
                 squares += value.weight[i] * value.weight[i]
                 # Read, add, write: "+=" on an array element would be atomic.
@@ -102,6 +106,10 @@ def make_resolve_kernel(*, dimension: int, correction: str, gradients: bool) -> 
                 # Whole rows, of which only the lower part is used: compilers turn them into vector instructions.
                 for m in range(wp.static(feature_count)):
                     gram[m] += features * features[m]
+                candidate = number % wp.static(FAR_COUNT)
+                if wp.length_sq(landed) > far_squared[candidate]:
+                    far_squared[candidate] = wp.length_sq(landed)
+                    far[candidate] = features
             if wp.static(gradients):
                 if with_gradient:
                     normal = wp.vec3d(direction(seed, wp.uint32(point), wp.uint32(number), wp.uint32(0)))
@@ -122,7 +130,7 @@ def make_resolve_kernel(*, dimension: int, correction: str, gradients: bool) -> 
         degree = int(0)
         if wp.static(harmonic):
             gram = factor_gram(gram, count_of_degree(max_degree))
-            degree = choose_degree(gram, moments, slot, vertex_count, walks, max_degree, squares)
+            degree = choose_degree(gram, moments, slot, vertex_count, walks, max_degree, squares, far)
             if points.key[point] >= 0:
                 degree = wp.max(degree, 1)
             count = count_of_degree(degree)
@@ -149,11 +157,15 @@ def make_resolve_kernel(*, dimension: int, correction: str, gradients: bool) -> 
             if wp.static(correction == "affine"):
                 correct_affinely(moments, tables, slot, piece, vertex_count, origin)
         degrees[point] = degree
+        least = float(0.0)
         for j in range(vertex_count):
-            weights[point, j] = float(moments.value[slot, j][0])
+            weight = float(moments.value[slot, j][0])
+            weights[point, j] = weight
+            least = wp.min(least, weight)
             if wp.static(gradients):
                 if with_gradient:
                     scaled = moments.slope[slot, j] / wp.float64(half_side)
                     weight_gradients[points.gradient_row[point], j] = wp.vec3(scaled)
+        lowest[point] = least
 
     return resolve

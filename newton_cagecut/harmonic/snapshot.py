@@ -50,14 +50,14 @@ class CoordinatesSnapshot:
             walker: Points, walks and weights.
             domain: Walls, grid and faces.
         """
-        arrays = {name: wp.clone(array) for name, array in _arrays(walker).items()}
+        arrays = {name: wp.clone(array) for name, array in edited_arrays(walker).items()}
         return cls(walker, domain.state(), arrays, walker._rest.copy(), walker.point_count)
 
     def restore(self) -> None:
         """Bring everything back; arrays that did not grow since stay where they are."""
         walker = self.owner
         walker.domain.restore(self.domain)
-        for name, array in _arrays(walker).items():
+        for name, array in edited_arrays(walker).items():
             kept = self.arrays[name]
             if array.shape == kept.shape:
                 wp.copy(array, kept)
@@ -70,9 +70,9 @@ class CoordinatesSnapshot:
         walker.point_count = self.point_count
 
 
-def _arrays(walker: Walker) -> dict[str, wp.array]:
+def edited_arrays(walker: Walker) -> dict[str, wp.array]:
     """The arrays that edits write to, by name."""
     arrays = {f"landing {name}": getattr(walker.landings, name) for name in LANDING_DTYPES[walker.domain.dimension]}
     arrays |= {f"point {name}": getattr(walker.points, name) for name in _POINT_ARRAYS}
     arrays |= {"bounds": walker.bounds, "weights": walker.weights, "gradients": walker.gradients}
-    return arrays | {"degrees": walker.degrees}
+    return arrays | {"degrees": walker.degrees, "lowest": walker.lowest}

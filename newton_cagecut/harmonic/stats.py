@@ -25,6 +25,7 @@ class UpdateStats:
         resumed: Walks that went on from their landings, where a face has moved outward.
         resolved_points: Points whose weights were resolved again.
         capped: Walks, of all, that the cap on steps stopped.
+        lowest_weight: Least weight of all points; 0 unless some are negative.
         seconds: Time of each part [s]: "walls", "check", "rewalk", "resume", "on_face", "resolve".
     """
 
@@ -35,6 +36,7 @@ class UpdateStats:
     resumed: int = 0
     resolved_points: int = 0
     capped: int = 0
+    lowest_weight: float = 0.0
     seconds: dict[str, float] = field(default_factory=dict)
 
     @property

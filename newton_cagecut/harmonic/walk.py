@@ -33,9 +33,9 @@ ON_WALL = wp.constant(1.0e-6)
 @wp.func
 def landing_key(triangles: WallTriangles, triangle: int, x: wp.vec3) -> wp.int32:
     """Key 2 * wall + side of a landing seen from x; a wall of the cage has side 0 only."""
-    key = 2 * triangles.wall[triangle]
-    if triangles.two_sided[triangle] == 1:
-        if wp.dot(triangles.normal[triangle], x - triangles.corner_0[triangle]) > 0.0:
+    key = 2 * triangles.rows[triangle].wall
+    if triangles.rows[triangle].two_sided == 1:
+        if wp.dot(triangles.rows[triangle].normal, x - triangles.rows[triangle].corner_0) > 0.0:
             key += 1
     return key
 
@@ -126,14 +126,15 @@ def make_walk_kernel(
             at_start = step == 0 and stream == seed
             gate = int(-1)
             if wp.static(gated):
-                gate = triangles.gate[nearest.triangle]
+                gate = triangles.rows[nearest.triangle].gate
                 if at_start and gate >= 0 and radius < ON_WALL:
                     # The point lies on the gate: it is behind it from the start.
                     passed = passed | gate_bit(gate)
                     nearest = nothing_yet()
                     continue
             if wp.static(bounded):
-                extents = bounds_kind.extend(extents, x, radius)
+                if not at_start:  # the first sphere is the point's, and is tested with it
+                    extents = bounds_kind.extend(extents, x, radius)
             if at_start and number == wp.uint32(0):
                 if wp.static(bounded):
                     if points.first_radius[point] != radius:
@@ -160,7 +161,7 @@ def make_walk_kernel(
                 nearest.point = closest_point_on_triangle(triangles, nearest.triangle, x)
                 nearest.distance_squared = wp.length_sq(x - nearest.point)
         if wp.static(gated):
-            if triangles.gate[nearest.triangle] >= 0:  # a capped walk lands on a wall all the same
+            if triangles.rows[nearest.triangle].gate >= 0:  # a capped walk lands on a wall all the same
                 nearest = nearest_wall(triangles, cells, x, nothing_yet(), ALL_GATES)
         key = landing_key(triangles, nearest.triangle, x)
         if wp.sqrt(nearest.distance_squared) >= epsilon:

@@ -18,7 +18,7 @@ from .land import make_land_kernel
 from .landing import CAPPED, LANDING_DTYPES, empty_landings
 from .launch import launch
 from .options import WalkOptions
-from .points import byte_count, empty_points
+from .points import INSIDE, REMOVED, byte_count, empty_points
 from .polynomials import make_polynomials
 from .regression import make_regression
 from .resolve import make_resolve_kernel
@@ -59,6 +59,7 @@ class Walker:
         device = domain.device
         self.points = empty_points(point_capacity, gradient_mask, device)
         self.degrees = wp.zeros(point_capacity, dtype=wp.int32, device=device)
+        self.lowest = wp.zeros(point_capacity, dtype=float, device=device)
         self._rest = np.zeros((point_capacity, domain.dimension))
         self.gradient_count = int(gradient_mask.sum())
         if point_capacity * options.walks >= 1 << 31:
@@ -82,7 +83,7 @@ class Walker:
         """Refuse an obstacle that covers points."""
         if edit.cage.volume >= edit.before.volume or edit.wall >= 0:
             return
-        inner = np.flatnonzero(self.points.key.numpy()[: self.point_count] < 0)
+        inner = np.flatnonzero(self._keys == INSIDE)
         covered = inner[~edit.cage.contains(self._rest[inner])]
         if len(covered):
             raise ValueError(
@@ -107,6 +108,39 @@ class Walker:
                 rows[:, : old.shape[1]] = old
                 array.assign(rows)
 
+    @property
+    def _keys(self) -> np.ndarray:
+        """Keys of the points, shape (point_count,)."""
+        return self.points.key.numpy()[: self.point_count]
+
+    @property
+    def rest(self) -> np.ndarray:
+        """Rest positions of the points [m], shape (point_count, dimension)."""
+        return self._rest[: self.point_count]
+
+    @property
+    def removed_points(self) -> np.ndarray:
+        """Numbers of the points that were removed, ascending."""
+        return np.flatnonzero(self._keys == REMOVED)
+
+    def remove(self, indices: np.ndarray) -> None:
+        """Forget points; what they held is 0, and their numbers are free."""
+        _scatter(self.points.key, indices, REMOVED)
+        _scatter(self.points.piece, indices, -1)
+        _scatter(self.landings.key, self._walk_numbers(indices), 0)  # no capped walk is counted
+        _scatter(self.degrees, indices, 0)
+        _scatter(self.weights, indices, 0.0)
+        rows = self.points.gradient_row.numpy()[indices]
+        _scatter(self.gradients, rows[rows >= 0], 0.0)
+
+    def walks_of(self, indices: np.ndarray) -> wp.array:
+        """The walks of points, as work to do."""
+        return wp.array(self._walk_numbers(indices), dtype=wp.int32, device=self.domain.device)
+
+    def _walk_numbers(self, indices: np.ndarray) -> np.ndarray:
+        walks = self.options.walks
+        return (indices[:, None] * walks + np.arange(walks)).reshape(-1).astype(np.int32)
+
     def place(self, indices: np.ndarray, points: np.ndarray, keys: np.ndarray) -> None:
         """Set points' rest positions [m] and keys; new points continue the count."""
         self.point_count = max(self.point_count, int(indices.max(initial=-1)) + 1)
@@ -120,18 +154,21 @@ class Walker:
 
     def group_points(self) -> None:
         """Find the piece of every point that is not on a wall again."""
-        inner = np.flatnonzero(self.points.key.numpy()[: self.point_count] < 0)
+        inner = np.flatnonzero(self._keys == INSIDE)
         _scatter(self.points.piece, inner, self.domain.pieces_of(self._rest[inner]))
 
     def free_points(self, walls: np.ndarray) -> None:
         """Points on walls that have retired are inside from now on."""
-        freed = np.flatnonzero(np.isin(self.points.key.numpy()[: self.point_count] // 2, walls))
-        self.place(freed, self._rest[freed], np.full(len(freed), -1, dtype=np.int32))
+        freed = np.flatnonzero(np.isin(self._keys // 2, walls))
+        self.place(freed, self._rest[freed], np.full(len(freed), INSIDE, dtype=np.int32))
 
     def run_all(self, stats: UpdateStats, *, progress: Callable[[float], None] | None = None) -> None:
         """Walk, land and resolve every point, in batches where walks are not kept."""
+        stats.rewalked = stats.walk_count
+        if len(self.removed_points):
+            self.run_points(np.flatnonzero(self._keys != REMOVED), stats)
+            return
         walks = self.options.walks
-        stats.walk_count = stats.rewalked = self.point_count * walks
         batch = self.point_count if self.cuttable else min(self.point_count, max(1, _BATCH_WALKS // walks))
         if not self.cuttable:
             self.landings = self._empty_landings(batch * walks)
@@ -147,6 +184,13 @@ class Walker:
             self.resolve(np.arange(first, first + count), stats, first_point=first)
         if not self.cuttable:
             self.landings = self._empty_landings(0)
+
+    def run_points(self, indices: np.ndarray, stats: UpdateStats) -> None:
+        """Walk, land and resolve some points, whose walks are kept."""
+        work = self.walks_of(indices)
+        self.walk(work, stats)
+        self.land(work, stats)
+        self.resolve(indices, stats)
 
     def walk(
         self,
@@ -217,9 +261,10 @@ class Walker:
             for first in range(0, len(points), batch):
                 inputs = [first, rows, moments, options.walks, first_point, wp.uint32(options.seed), options.degree]
                 inputs += [domain.frame.half_side, vertex_count, self.points]
-                inputs += [domain.faces, self.landings, self.weights, self.gradients, self.degrees]
+                inputs += [domain.faces, self.landings, self.weights, self.gradients, self.degrees, self.lowest]
                 launch(kernel, min(batch, len(points) - first), inputs, device=domain.device, smallest_chunk=16)
             stats.resolved_points += len(points)
+            stats.lowest_weight = float(self.lowest.numpy()[: self.point_count].min())
             if self.cuttable:
                 stats.capped = count_capped(self.landings.key[: self.point_count * options.walks], int(CAPPED))
             else:

@@ -28,23 +28,30 @@ MOST_GATES = 31
 
 
 @wp.struct
-class WallTriangles:
-    """Triangles in the unit frame, shape (triangle_count,) each.
+class WallTriangle:
+    """A triangle in the unit frame.
 
     ``inward_k`` is the unit normal, in the plane, of the edge that starts at corner k, and points into the triangle.
     ``gate`` is the number of the gate that the triangle belongs to, -1 for walls.
     """
 
-    corner_0: wp.array[wp.vec3]
-    corner_1: wp.array[wp.vec3]
-    corner_2: wp.array[wp.vec3]
-    inward_0: wp.array[wp.vec3]
-    inward_1: wp.array[wp.vec3]
-    inward_2: wp.array[wp.vec3]
-    normal: wp.array[wp.vec3]
-    wall: wp.array[wp.int32]
-    two_sided: wp.array[wp.int32]
-    gate: wp.array[wp.int32]
+    corner_0: wp.vec3
+    corner_1: wp.vec3
+    corner_2: wp.vec3
+    inward_0: wp.vec3
+    inward_1: wp.vec3
+    inward_2: wp.vec3
+    normal: wp.vec3
+    wall: wp.int32
+    two_sided: wp.int32
+    gate: wp.int32
+
+
+@wp.struct
+class WallTriangles:
+    """All triangles: what a query needs of one lies side by side."""
+
+    rows: wp.array[WallTriangle]
     count: int
 
 
@@ -62,16 +69,16 @@ def closest_point_on_segment(a: wp.vec3, b: wp.vec3, x: wp.vec3) -> wp.vec3:
 def inward_distances(triangles: WallTriangles, t: int, x: wp.vec3) -> wp.vec3:
     """Signed distances from the planes through a triangle's edges, across its own plane; negative outside."""
     return wp.vec3(
-        wp.dot(triangles.inward_0[t], x - triangles.corner_0[t]),
-        wp.dot(triangles.inward_1[t], x - triangles.corner_1[t]),
-        wp.dot(triangles.inward_2[t], x - triangles.corner_2[t]),
+        wp.dot(triangles.rows[t].inward_0, x - triangles.rows[t].corner_0),
+        wp.dot(triangles.rows[t].inward_1, x - triangles.rows[t].corner_1),
+        wp.dot(triangles.rows[t].inward_2, x - triangles.rows[t].corner_2),
     )
 
 
 @wp.func
 def plane_distance(triangles: WallTriangles, t: int, x: wp.vec3) -> float:
     """Signed distance from the triangle's plane, measured from a corner to keep the digits."""
-    return wp.dot(triangles.normal[t], x - triangles.corner_0[t])
+    return wp.dot(triangles.rows[t].normal, x - triangles.rows[t].corner_0)
 
 
 @wp.func
@@ -82,10 +89,10 @@ def closest_point(triangles: WallTriangles, t: int, x: wp.vec3, off: float, inwa
     exact as any other triangle (products of barycentric areas are not, in float32).
     """
     if inward[0] >= 0.0 and inward[1] >= 0.0 and inward[2] >= 0.0:
-        return x - triangles.normal[t] * off
-    a = triangles.corner_0[t]
-    b = triangles.corner_1[t]
-    c = triangles.corner_2[t]
+        return x - triangles.rows[t].normal * off
+    a = triangles.rows[t].corner_0
+    b = triangles.rows[t].corner_1
+    c = triangles.rows[t].corner_2
     best = a
     best_squared = float(1.0e30)
     if inward[0] < 0.0:
@@ -127,6 +134,19 @@ class Walls:
         self.triangle_count = 0
         self._rows: dict[str, np.ndarray] = {}
         self.data = WallTriangles()
+
+    @classmethod
+    def of_rows(cls, frame: UnitFrame, rows: dict[str, np.ndarray], *, device: wp.context.Device) -> Walls:
+        """Walls that were there before, by their ``rows``."""
+        walls = cls(frame, device=device)
+        walls._rows, walls.triangle_count = rows, len(rows["wall"])
+        walls._upload()
+        return walls
+
+    @property
+    def rows(self) -> dict[str, np.ndarray]:
+        """The triangles on the host: an array for each field of ``WallTriangle``."""
+        return self._rows
 
     def append(self, corners: np.ndarray, walls: np.ndarray, normals: np.ndarray, two_sided: np.ndarray) -> range:
         """Append triangles and return their indices.
@@ -172,9 +192,9 @@ class Walls:
         gates[self._rows["wall"]] = self._rows["gate"]
         return wp.array(gates, dtype=wp.int32, device=self.device)
 
-    def box(self) -> tuple[np.ndarray, np.ndarray]:
-        """Least and greatest coordinates of the triangles in the unit frame, shape (3,) each."""
-        corners = np.concatenate([self._rows[f"corner_{k}"] for k in range(3)])
+    def box(self, first: int = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Least and greatest coordinates of the triangles from the first on in the unit frame, shape (3,) each."""
+        corners = np.concatenate([self._rows[f"corner_{k}"][first:] for k in range(3)])
         return corners.min(axis=0), corners.max(axis=0)
 
     def state(self) -> tuple:
@@ -187,9 +207,10 @@ class Walls:
 
     def _upload(self) -> None:
         data = WallTriangles()
-        for name, rows in self._rows.items():
-            dtype = wp.vec3 if rows.ndim == 2 else wp.int32
-            setattr(data, name, wp.array(rows, dtype=dtype, device=self.device))
+        rows = np.zeros(self.triangle_count, dtype=WallTriangle.numpy_dtype())
+        for name, values in self._rows.items():
+            rows[name] = values
+        data.rows = wp.array(rows, dtype=WallTriangle, device=self.device)
         data.count = self.triangle_count
         self.data = data
 

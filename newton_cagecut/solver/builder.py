@@ -167,8 +167,8 @@ def _thickness_of(cage: Cage, surface: Surface, thickness: float | None) -> floa
     """Thickness of a plane body, None of a solid one; refuses what is not of the cage's dimension."""
     if surface.dimension != cage.dimension:
         raise ValueError(
-            f"the cage is of dimension {cage.dimension} and the mesh of dimension {surface.dimension}; give mesh points "
-            f"of {cage.dimension} numbers"
+            f"the cage is of dimension {cage.dimension} and the mesh of dimension {surface.dimension}; give mesh "
+            f"points of {cage.dimension} numbers"
         )
     if cage.dimension == 3:
         if thickness is not None:

@@ -27,7 +27,7 @@ def outline_loops(label: str, segments: Sequence[Sequence[int]], point_count: in
     every = set(range(point_count))
     if len(segments) != point_count or set(following) != every or set(following.values()) != every:
         raise ValueError(
-            f"{label} is no outline: just one segment must start and one end at each of its {point_count} vertices, and "
+            f"{label} is no outline: just one segment must start and one end at each of its {point_count} vertices; "
             f"there are {len(segments)} segments"
         )
     loops = []

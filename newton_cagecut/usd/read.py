@@ -13,10 +13,9 @@ from pxr import Sdf, Tf, Usd, UsdGeom
 
 from ..cage import Cage
 from ..surface import Surface
-from .mesh_data import MeshData, check_mesh
+from .mesh_data import MeshData, check_mesh, turn_up
 from .outline import flat_points, read_outline
 
-_Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 _SEAM_TOLERANCE = 1e-5  # of texture space: corners of one vertex that agree to this are one texture coordinate
 
 
@@ -102,8 +101,8 @@ def read_surface(
         source: As in :func:`read_mesh`.
         prim_path: As in :func:`read_mesh`.
         up_axis: As in :func:`read_mesh`.
-        flat: Whether to read a mesh that lies in a plane normal to z as the surface of a plane cage. If it faces -z, all
-            its triangles are reversed.
+        flat: Whether to read a mesh that lies in a plane normal to z as the surface of a plane cage. If it faces -z,
+            all its triangles are reversed.
         options: Keyword arguments of :class:`~newton_cagecut.surface.Surface`.
 
     Returns:
@@ -159,8 +158,8 @@ def _find_prim(stage: Usd.Stage, prim_path: str | None, kind: type) -> Usd.Prim:
         place = f"no mesh at or below {prim_path}" if prim_path else "no mesh"
         raise ValueError(f"{label} has {place}; its meshes: {_listed(_prims(stage, None, UsdGeom.Mesh))}")
     if len(found) > 1:
-        names = "meshes" if kind is UsdGeom.Mesh else "prims of curves"
-        raise ValueError(f"{label} has {len(found)} {names}; choose one with prim_path: {_listed(found)}")
+        what = f"{len(found)} {'meshes' if kind is UsdGeom.Mesh else 'prims of curves'}"
+        raise ValueError(f"{label} has {what}; choose one by its path (prim_path, --prim): {_listed(found)}")
     return found[0]
 
 
@@ -176,7 +175,7 @@ def _place(prim: UsdGeom.PointBased, points: np.ndarray, up_axis: str | None) ->
     transform = np.array(prim.ComputeLocalToWorldTransform(Usd.TimeCode.EarliestTime()))
     placed = (points @ transform[:3, :3] + transform[3, :3]) * UsdGeom.GetStageMetersPerUnit(stage)
     stage_axis = str(UsdGeom.GetStageUpAxis(stage))
-    return _turn(placed, stage_axis, up_axis or stage_axis), bool(np.linalg.det(transform[:3, :3]) < 0.0)
+    return turn_up(placed, stage_axis, up_axis or stage_axis), bool(np.linalg.det(transform[:3, :3]) < 0.0)
 
 
 def _arrays(mesh: UsdGeom.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -203,10 +202,3 @@ def _texture_coordinates(mesh: UsdGeom.Mesh, label: str, point_count: int, indic
             return uvs
     warnings.warn(f"{label}: its texture coordinates do not belong to vertices; they are left out", stacklevel=3)
     return None
-
-
-def _turn(points: np.ndarray, stage_axis: str, up_axis: str) -> np.ndarray:
-    """Rotate points about x from one up axis to the other."""
-    if stage_axis == up_axis:
-        return points
-    return points @ (_Y_TO_Z.T if stage_axis == "Y" else _Y_TO_Z)
