@@ -7,7 +7,7 @@ from functools import cache
 
 import warp as wp
 
-from .grid import GridCells, cell_of
+from .cells import GridCells, cell_of
 from .walls import WallTriangles, closest_point, inward_distances, plane_distance
 
 wp.set_module_options({"enable_backward": False})

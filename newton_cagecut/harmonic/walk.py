@@ -16,7 +16,7 @@ from functools import cache
 import warp as wp
 
 from .bounds_kind import BoundsKind
-from .grid import GridCells
+from .cells import GridCells
 from .landing import CAPPED, PASSED, landing_type, point_functions
 from .nearest import ALL_GATES, make_nearest, nothing_yet
 from .points import QueryPoints

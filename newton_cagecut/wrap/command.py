@@ -97,10 +97,12 @@ def report(cage: Cage, surface: Surface) -> str:
     corners = surface.points[np.unique(surface.triangles)]
     diagonal = float(np.linalg.norm(np.ptp(corners, axis=0)))
     clearance = mesh_clearance(cage, surface.points, surface.triangles)
-    if surface.closed:
-        volume = f"{cage.volume / abs(surface.volume):.2f} times the mesh's"
-    else:
+    if not surface.closed:
         volume = "the mesh is open, which the cage is not"
+    elif surface.volume == 0.0:
+        volume = "the mesh has none"
+    else:
+        volume = f"{cage.volume / abs(surface.volume):.2f} times the mesh's"
     pieces = "" if cage.component_count == 1 else f", {cage.component_count} components"
     return (
         f"{cage.face_count} faces, {cage.vertex_count} vertices{pieces}\n"

@@ -28,10 +28,8 @@ def alpha_wrap(points: np.ndarray, triangles: np.ndarray, *, alpha: float, offse
     Returns:
         Vertices, shape (vertex_count, 3), and triangles, shape (wrap_triangle_count, 3).
     """
-    meshlab = import_meshlab()
-    meshes = _meshes(points, triangles)
-    meshes.generate_alpha_wrap(alpha=meshlab.PureValue(alpha), offset=meshlab.PureValue(offset))
-    return _arrays(meshes)
+    lengths = {"alpha": import_meshlab().PureValue(alpha), "offset": import_meshlab().PureValue(offset)}
+    return _filtered(points, triangles, "generate_alpha_wrap", **lengths)
 
 
 def decimate(points: np.ndarray, triangles: np.ndarray, face_count: int) -> Triangles:
@@ -45,11 +43,8 @@ def decimate(points: np.ndarray, triangles: np.ndarray, face_count: int) -> Tria
     Returns:
         Vertices and triangles as in :func:`alpha_wrap`.
     """
-    meshes = _meshes(points, triangles)
-    meshes.meshing_decimation_quadric_edge_collapse(
-        targetfacenum=face_count, preservetopology=True, preservenormal=True
-    )
-    return _arrays(meshes)
+    options = {"targetfacenum": face_count, "preservetopology": True, "preservenormal": True}
+    return _filtered(points, triangles, "meshing_decimation_quadric_edge_collapse", **options)
 
 
 def read_triangles(path: str) -> Triangles:
@@ -59,7 +54,7 @@ def read_triangles(path: str) -> Triangles:
         path: The file.
 
     Returns:
-        Points and triangles as they stand in the file, both as in :func:`alpha_wrap`.
+        Points and triangles as in :func:`alpha_wrap`.
 
     Raises:
         ImportError: The extra is not installed.
@@ -70,9 +65,8 @@ def read_triangles(path: str) -> Triangles:
     try:
         meshes.load_new_mesh(path)
     except meshlab.PyMeshLabException as error:
-        raise ValueError(f"{path} cannot be read as a mesh: {' '.join(str(error).split())}") from None
-    if meshes.mesh_number() > 1:
-        meshes.generate_by_merging_visible_meshes()
+        raise ValueError(f"{path} cannot be read as a mesh: {error}") from None
+    meshes.generate_by_merging_visible_meshes()  # one mesh, with its transform applied
     return _arrays(meshes)
 
 
@@ -92,12 +86,16 @@ def import_meshlab() -> ModuleType:
     return pymeshlab
 
 
-def _meshes(points: np.ndarray, triangles: np.ndarray):
-    """Return a set of PyMeshLab with one mesh."""
+def _filtered(points: np.ndarray, triangles: np.ndarray, name: str, **options: object) -> Triangles:
+    """Return what a filter of PyMeshLab makes of a mesh; its failure is a ``ValueError``."""
     meshlab = import_meshlab()
     meshes = meshlab.MeshSet()
     meshes.add_mesh(meshlab.Mesh(np.asarray(points, dtype=np.float64), np.asarray(triangles, dtype=np.int32)))
-    return meshes
+    try:
+        meshes.apply_filter(name, **options)
+    except meshlab.PyMeshLabException as error:
+        raise ValueError(f"PyMeshLab's {name} failed: {error}") from None
+    return _arrays(meshes)
 
 
 def _arrays(meshes) -> Triangles:

@@ -17,12 +17,13 @@ from scipy.spatial import cKDTree
 
 from ..cage import Cage, check_inside, mesh_clearance
 from ..surface import Surface
+from .broaden import broaden
 from .meshlab import alpha_wrap, decimate, import_meshlab
 from .sampling import spread_points
 from .shell import Shell
 from .tighten import tighten
 
-_FACE_COUNTS = (4, 1000)
+_FACE_COUNTS = (4, 500)
 _OFFSETS = (1e-3, 0.25)
 _TRIES = 8
 _FIRST_OFFSETS = (0.03, 3.0)  # of the first shell that is decimated: of the mesh's diagonal, of the offset
@@ -43,7 +44,7 @@ def wrap_cage(points: np.ndarray, triangles: np.ndarray, face_count: int = 60, *
     Args:
         points: Points of the mesh, shape (point_count, 3) [m].
         triangles: Point ids, shape (triangle_count, 3).
-        face_count: Triangles of the cage, 4 to 1000; the cage has at most a tenth more.
+        face_count: Triangles of the cage, 4 to 500; the cage has at most a tenth more.
         offset: Least distance between the mesh and the cage's faces, of the diagonal of the mesh's bounding box,
             0.001 to 0.25.
 
@@ -94,9 +95,10 @@ class _Mesh:
         if self.diagonal == 0.0:
             raise ValueError("all points of the mesh coincide; a cage needs a mesh with an extent")
         self.scaled = (points - self.centre) / self.diagonal
+        self.broad = broaden(self.scaled, triangles)
         self.spacing = float(np.clip(0.5 * offset, *_SPACINGS))
         self.skin = cKDTree(spread_points(self.scaled, triangles, self.spacing))
-        self.held = self._wrap(1.5 * offset, least_alpha=_HELD_ALPHA)[0]
+        self.held = self._wrap(offset + min(0.5 * offset, _SPACINGS[1]), least_alpha=_HELD_ALPHA)[0]
 
     def cage(self, face_count: int, number: int) -> Cage:
         """Make one try at a cage.
@@ -112,6 +114,7 @@ class _Mesh:
         shell = Shell(*decimate(*self._wrap(offset), face_count))
         if len(shell.triangles) > _SURPLUS * face_count:
             raise ValueError(f"decimation stopped at {len(shell.triangles)} faces")
+        Cage(shell.vertices, shell.triangles)  # moves keep a shell from meeting itself, but do not free one that does
         margin = self.offset + 0.6 * self.spacing * (1 + number)
         shell = tighten(shell, self.held, self.skin, margin=margin, spacing=2.0 * self.spacing)
         cage = Cage(self.diagonal * shell.vertices + self.centre, shell.triangles)
@@ -124,7 +127,7 @@ class _Mesh:
     def _wrap(self, offset: float, *, least_alpha: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
         """Wrap the scaled mesh at a distance."""
         alpha = min(max(least_alpha, _ALPHA * offset), _LARGEST_ALPHA)
-        return alpha_wrap(self.scaled, self.triangles, alpha=alpha, offset=offset)
+        return alpha_wrap(*self.broad, alpha=alpha, offset=offset)
 
 
 def _refuse_strays(cage: Cage, points: np.ndarray, used: np.ndarray) -> None:
