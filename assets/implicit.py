@@ -19,8 +19,8 @@ Field = Callable[[np.ndarray], np.ndarray]
 
 
 def field_gradient(field: Field, points: np.ndarray, step: float) -> np.ndarray:
-    """Return the central differences of ``field`` at ``points``, shape ``(n, 3)``."""
-    axes = np.eye(3) * step
+    """Return the central differences of ``field`` at ``points``, shape ``(n, dimension)``."""
+    axes = np.eye(points.shape[1]) * step
     return np.stack([(field(points + axis) - field(points - axis)) / (2 * step) for axis in axes], axis=1)
 
 

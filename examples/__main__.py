@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from examples.scene import CutScene
 
-SCENES = ("starfish", "bunny")
+SCENES = ("starfish", "bunny", "gingerbread")
 
 
 def scene_list() -> str:
@@ -21,7 +21,7 @@ def scene_list() -> str:
     lines = ["usage: python -m examples NAME [options]; NAME --help shows the options", ""]
     for name in SCENES:
         module = ast.parse((Path(__file__).parent / f"{name}.py").read_text())
-        lines.append(f"  {name:<10} {ast.get_docstring(module).splitlines()[0]}")
+        lines.append(f"  {name:<12} {ast.get_docstring(module).splitlines()[0]}")
     return "\n".join(lines)
 
 

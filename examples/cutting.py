@@ -9,8 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import newton
+import numpy as np
 
-from newton_cagecut import Blade, CutReport, SolverCageCut
+from newton_cagecut import Blade, Cage, Cut, CutReport, SolverCageCut
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,6 +25,7 @@ class PlannedCut:
         until: How far the blade goes, as a fraction of the cut's length.
         pieces: Pieces of all bodies together after the cut.
         body: The body's index.
+        turns: Depths at which the blade turns [m], and the directions in which it goes on; see :func:`along`.
     """
 
     name: str
@@ -32,6 +34,25 @@ class PlannedCut:
     until: float = 1.0
     pieces: int = 1
     body: int = 0
+    turns: tuple[tuple[float, np.ndarray], ...] = ()
+
+    def next_turn(self, depth: float) -> float:
+        """Depth of the first turn beyond a depth, infinite without one [m]."""
+        return min((turn for turn, _ in self.turns if turn > depth), default=math.inf)
+
+
+def along(cage: Cage, path: np.ndarray, **options: object) -> PlannedCut:
+    """Return the cut of a plane cage along a line of straight parts.
+
+    Args:
+        cage: The cage.
+        path: The line's corners, from the first, outside of the cage, to the last, shape (n, 2) [m].
+        options: What else the cut has.
+    """
+    parts = np.diff(path, axis=0)
+    blade = Blade(path[0], parts[0], start=0.0)
+    depths = np.cumsum(np.linalg.norm(parts, axis=1)) - Cut(cage, blade).front
+    return PlannedCut(blade=blade, turns=tuple(zip(depths[:-1].tolist(), parts[1:])), **options)
 
 
 class CutSchedule:
@@ -74,19 +95,21 @@ class CutSchedule:
             if self._waited <= planned.wait / self._pace:
                 return None
             self._active = self._solver.begin_cut(planned.body, planned.blade)
-        cut = self._active
-        end = planned.until * cut.length
+        cut, turn = self._active, planned.next_turn(self._active.depth)
+        end = planned.until * cut.length if math.isinf(turn) else turn
         report = self._solver.advance_cut(cut, to=min(cut.depth + self._step * cut.length, end), states=states)
-        if cut.complete or cut.depth >= end:
+        if cut.complete or (cut.depth >= end and end < turn):
             self._active, self._waited, self._number = None, 0, self._number + 1
+        elif cut.depth >= turn:
+            cut.turn(dict(planned.turns)[turn])
         return report
 
 
 def frames_of(plan: Sequence[PlannedCut], *, step: float = 0.03) -> int:
-    """Return the frames that the cuts of a plan take, waits included.
+    """Return the frames that the cuts of a plan take at most, waits included.
 
     Args:
         plan: The cuts.
         step: What the blade advances a frame, as a fraction of the cut's length.
     """
-    return sum(cut.wait + math.ceil(cut.until / step) for cut in plan)
+    return sum(cut.wait + math.ceil(cut.until / step) + len(cut.turns) for cut in plan)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -99,19 +100,23 @@ class Recording:
         frames = []
         for body in scene.solver.bodies:
             points, triangles = scene.solver.surface(scene.state_0, body.label)
-            frames.append(
-                BodyFrame(
-                    name=body.label,
-                    points=points,
-                    triangles=triangles,
-                    triangle_cap=body.surface.triangle_cap,
-                    rest_points=body.surface.points,
-                    cage_points=scene.state_0.particle_q[body.vertices].numpy()[: body.cage.vertex_count],
-                    cage_faces=body.cage.faces,
-                    skin_color=scene.skin_color,
-                    cap_color=scene.cap_color,
-                )
+            paint = scene.painted(body)
+            frame = BodyFrame(
+                name=body.label,
+                points=points,
+                triangles=triangles[~paint],
+                triangle_cap=body.surface.triangle_cap[~paint],
+                rest_points=body.surface.mesh.vertices,
+                cage_points=scene.state_0.particle_q[body.vertices].numpy()[: body.cage.vertex_count],
+                cage_faces=body.cage.faces,
+                skin_color=scene.skin_color,
+                cap_color=scene.cap_color,
             )
+            frames.append(frame)
+            if paint.any():
+                painted = {"name": f"{body.label}_paint", "skin_color": scene.paint_color, "cage_points": None}
+                painted |= {"triangles": triangles[paint], "triangle_cap": body.surface.triangle_cap[paint]}
+                frames.append(replace(frame, **painted))
         return frames
 
     def _draw(self) -> None:
@@ -119,8 +124,12 @@ class Recording:
         meshes: list[Mesh] = [(mesh.points, mesh.triangles, STATIC_COLOR) for mesh in scene.static_meshes]
         for body in scene.solver.bodies:
             points, triangles = scene.solver.surface(scene.state_0, body.label)
-            is_cap = np.asarray(body.surface.triangle_cap) >= 0
-            meshes.append((points, triangles, np.where(is_cap[:, None], scene.cap_color, scene.skin_color)))
+            colors = np.tile(scene.skin_color, (len(triangles), 1))
+            colors[body.surface.triangle_cap >= 0] = scene.cap_color
+            paint = scene.painted(body)
+            if paint.any():
+                colors[paint] = scene.paint_color
+            meshes.append((points, triangles, colors))
         render_png(self._picture, meshes, scene.camera, PICTURE_SIZE, ground=0.0, ray_count=6)
         self._drawn = True
         print(f"{self._picture}: {_megabytes(self._picture)}, frame {scene.frame}")

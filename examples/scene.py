@@ -37,6 +37,7 @@ class CutScene:
     camera: Camera
     skin_color: Color
     cap_color: Color
+    paint_color: Color | None = None
     static_meshes: tuple[StaticMesh, ...] = ()
 
     def __init__(self, viewer: newton.viewer.ViewerBase, args: Namespace):
@@ -70,6 +71,10 @@ class CutScene:
     def cuts(self) -> list[PlannedCut]:
         """Return the cuts that will be made."""
         raise NotImplementedError
+
+    def painted(self, body: CageBody) -> np.ndarray:
+        """Return which triangles of a body's surface have the colour of the paint, as a mask."""
+        return np.zeros(body.surface.triangle_count, dtype=bool)
 
     def step(self) -> None:
         """Advance the blade and the time by a frame."""
@@ -124,20 +129,18 @@ class CutScene:
         pieces = 0
         for body in self.solver.bodies:
             points, _ = self.solver.surface(self.state_0, body.label)
-            _require(np.isfinite(points).all(), f"{body.label}: the surface is finite")
-            _require(points[:, 2].min() > -0.02, f"{body.label}: the surface is above the ground")
-            _require(np.abs(points).max() < 2.0, f"{body.label}: the surface is within 2 m of the middle")
-            _require(body.surface.closed, f"{body.label}: the surface is closed")
+            require(np.isfinite(points).all(), f"{body.label}: the surface is finite")
+            require(points[:, 2].min() > -0.02, f"{body.label}: the surface is above the ground")
+            require(np.abs(points).max() < 2.0, f"{body.label}: the surface is within 2 m of the middle")
+            require(body.surface.closed or body.is_plane, f"{body.label}: the surface is closed")
             sums = body.coordinates.weights.sum(axis=1)
-            _require(np.abs(sums - 1.0).max() < 1e-4, f"{body.label}: the weights of each point sum to 1")
-            _require(
-                _moves_as_pieces(body), f"{body.label}: each piece of the surface moves with one piece of the cage"
-            )
+            require(np.abs(sums - 1.0).max() < 1e-4, f"{body.label}: the weights of each point sum to 1")
+            require(_moves_as_pieces(body), f"{body.label}: each piece of the surface moves with one piece of the cage")
             pieces += body.surface.mesh.component_count
         done = self.schedule.current
         if not self.schedule.active:
             expected = self.plan[done - 1].pieces if done else len(self.solver.bodies)
-            _require(pieces == expected, f"{expected} pieces after {done} cuts, {pieces} found")
+            require(pieces == expected, f"{expected} pieces after {done} cuts, {pieces} found")
 
     @classmethod
     def create_parser(cls) -> ArgumentParser:
@@ -168,7 +171,8 @@ class CutScene:
         self.viewer.set_camera(wp.vec3(*self.camera.eye), float(pitch), float(yaw))
 
 
-def _require(true: bool, text: str) -> None:
+def require(true: bool, text: str) -> None:
+    """Raise if something is not true that should be at the end of a scene."""
     if not true:
         raise ValueError(f"the scene's test failed: {text}")
 

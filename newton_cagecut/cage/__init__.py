@@ -10,6 +10,7 @@ from .edit import CageEdit
 from .inside import boundary_distances, check_inside
 from .pieces import CagePiece
 from .polygon_mesh import PolygonMesh
+from .space import lifted
 from .triangulate import triangulate
 from .wall import Wall
 
@@ -25,6 +26,7 @@ __all__ = [
     "Wall",
     "boundary_distances",
     "check_inside",
+    "lifted",
     "mesh_clearance",
     "triangulate",
 ]

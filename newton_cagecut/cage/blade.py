@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .space import lifted
 from .wall import Wall
 
 _LEAST_SINE = 1e-3
@@ -112,6 +113,12 @@ class BladePlane:
     def across(self) -> np.ndarray:
         """Unit direction of the plane across its edge, ahead, shape (dimension,)."""
         return self.direction if self.dimension == 2 else np.cross(self.normal, self.edge)
+
+    def in_space(self) -> BladePlane:
+        """The plane itself, or in 2D the one in space that stands on the line, with the blade's edge along z."""
+        if self.dimension == 3:
+            return self
+        return BladePlane(lifted(self.origin), np.array([0.0, 0.0, 1.0]), lifted(self.direction), lifted(self.normal))
 
     def shifted(self, offset: float) -> BladePlane:
         """The plane moved along its normal.

@@ -73,6 +73,7 @@ class LineSection(Section):
         self._join_chords(vertex_piece[mesh.face_vertex[self.node_half_edge]])
         if np.isfinite(start):
             self._drop_behind(start, tolerance)
+            self.window = (-np.inf, np.inf, start)
 
     def _add_hinge(self, hinge: Hinge) -> None:
         """Add a node at the hinge's vertex, where the line enters the body; the segment that leaves it is parted."""

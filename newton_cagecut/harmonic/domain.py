@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 import warp as wp
 
-from ..cage import Cage, CageEdit
+from ..cage import Cage, CageEdit, lifted
 from .compact import CHANGED_KEY, RETIRED_KEY, UNCHANGED_KEY
 from .faces import FaceTables, build_face_tables
-from .frame import UnitFrame, lifted
+from .frame import UnitFrame
 from .grid import CandidateGrid
 from .launch import launch
 from .nearest import measure_distance

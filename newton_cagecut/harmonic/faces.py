@@ -12,8 +12,8 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from ..cage import Cage
-from .frame import UnitFrame, lifted
+from ..cage import Cage, lifted
+from .frame import UnitFrame
 
 wp.set_module_options({"enable_backward": False})
 

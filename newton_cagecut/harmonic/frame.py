@@ -13,6 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..cage import lifted
+
 
 @dataclass(frozen=True)
 class UnitFrame:
@@ -39,9 +41,3 @@ class UnitFrame:
     def to_space(self, points: np.ndarray) -> np.ndarray:
         """Map rest positions [m] to the unit frame as float32 in space; those of 2D lie in the plane z = 0."""
         return lifted(self.to_unit(points)).astype(np.float32)
-
-
-def lifted(vectors: np.ndarray) -> np.ndarray:
-    """Vectors with a third component, 0 for those of 2D; shape (..., 3)."""
-    missing = 3 - vectors.shape[-1]
-    return np.concatenate([vectors, np.zeros((*vectors.shape[:-1], missing))], axis=-1) if missing else vectors

@@ -18,7 +18,8 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from .frame import UnitFrame, lifted
+from ..cage import lifted
+from .frame import UnitFrame
 
 wp.set_module_options({"enable_backward": False})
 

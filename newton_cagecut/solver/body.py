@@ -8,7 +8,6 @@ from __future__ import annotations
 import newton
 import numpy as np
 import warp as wp
-from scipy.spatial.transform import Rotation
 
 from ..cage import Cage
 from ..elastic import Energy, ReducedSystem
@@ -18,6 +17,7 @@ from .contact import ContactTerm
 from .definition import BodyDefinition
 from .embedding import embed
 from .quadrature import SPARE_COUNT, Quadrature
+from .rest_frame import RestFrame
 
 
 class CageBody:
@@ -41,7 +41,7 @@ class CageBody:
         self.vertices = slice(vertex_start, vertex_start + self.capacity.vertices)
         self.surface_particles = slice(surface_start, surface_start + self.capacity.surface_points)
         self.has_contact = surface_start >= 0
-        self._frame = _RestFrame.of(definition.cage, model.particle_q.numpy()[vertex_start:])
+        self._frame = RestFrame.of_particles(definition.cage.vertices, model.particle_q.numpy()[vertex_start:])
         self._quadrature = self._sample()
         self.quadrature_count = len(self._quadrature.points) if self._quadrature else 0
         self.coordinates = self._bake(progress)
@@ -64,6 +64,11 @@ class CageBody:
     def cage(self) -> Cage:
         """The cage as it is now."""
         return self.coordinates.cage
+
+    @property
+    def is_plane(self) -> bool:
+        """Whether the body is a plane one, in plane strain."""
+        return self.cage.dimension == 2
 
     @property
     def surface_row(self) -> int:
@@ -124,7 +129,7 @@ class CageBody:
             _write_rows(self.model.particle_flags, start, flags)
 
     def to_world(self, points: np.ndarray) -> np.ndarray:
-        """Rest positions in the world [m] of points of the cage's rest frame, shape (n, 3)."""
+        """Rest positions in the world [m], shape (n, 3), of points of the cage's rest frame, shape (n, dimension)."""
         return self._frame.to_world(points)
 
     def distribute_quadrature(self) -> None:
@@ -166,11 +171,12 @@ class CageBody:
             definition.quadrature_count,
             spare_count=SPARE_COUNT if definition.cuttable else 0,
             seed=definition.seed,
+            thickness=definition.thickness,
         )
 
     def _bake(self, progress) -> HarmonicCoordinates:
         definition = self.definition
-        quadrature = np.zeros((0, 3))
+        quadrature = np.zeros((0, definition.cage.dimension))
         if self._quadrature is not None:
             quadrature = self._quadrature.points
         points = np.concatenate([quadrature, definition.surface.points])
@@ -199,32 +205,13 @@ class CageBody:
             self.vertex_count,
             fixed=self.fixed,
             rotation=wp.array([self._frame.rotation], dtype=wp.mat33, device=self.device),
+            thickness=self.definition.thickness,
         )
 
     def _padded(self, mask: np.ndarray) -> np.ndarray:
         padded = np.zeros(self.capacity.vertices, dtype=np.int32)
         padded[: len(mask)] = mask
         return padded
-
-
-class _RestFrame:
-    """Rigid map from a cage's rest frame to the world, fitted to the particles that stand for its vertices.
-
-    Fitting makes it right however the body came into the model: by a pose, a world's offset or replication.
-    """
-
-    def __init__(self, rotation: np.ndarray, center: np.ndarray, world_center: np.ndarray) -> None:
-        self.rotation, self._center, self._world_center = rotation, center, world_center
-
-    @classmethod
-    def of(cls, cage: Cage, particles: np.ndarray) -> _RestFrame:
-        world = particles[: cage.vertex_count].astype(np.float64)
-        center, world_center = cage.vertices.mean(axis=0), world.mean(axis=0)
-        rotation = Rotation.align_vectors(world - world_center, cage.vertices - center)[0].as_matrix()
-        return cls(rotation, center, world_center)
-
-    def to_world(self, points: np.ndarray) -> np.ndarray:
-        return (points - self._center) @ self.rotation.T + self._world_center
 
 
 def _write_rows(array: wp.array, start: int, rows: np.ndarray) -> None:

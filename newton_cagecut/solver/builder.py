@@ -5,7 +5,8 @@
 
 The degrees of freedom of a body are Newton particles: one for each vertex that its cage has or may get by cuts.
 They carry no ACTIVE flag, so other solvers and the collision pipeline leave them alone. With a contact radius, the
-points of the embedded surface are particles too: ACTIVE, without mass, moved by the cage.
+points of the embedded surface are particles too: ACTIVE, without mass, moved by the cage. A plane body moves in one
+plane of the world, in plane strain (two dimensions of the paper's elasticity, section 6.1).
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from ..cage import Cage, check_inside
 from ..elastic import Material
 from ..surface import Surface
 from .definition import BodyDefinition, Capacity
+from .rest_frame import RestFrame
 
 FREQUENCY = "cagecut:body"
 
@@ -65,17 +67,22 @@ def add_cage_body(
     capacity: Capacity | None = None,
     cuttable: bool = True,
     contact_radius: float | None = None,
+    thickness: float | None = None,
     seed: int = 0,
     label: str | None = None,
     **options: object,
 ) -> int:
     """Add an elastic body that a cage deforms.
 
+    With a cage of segments it is a plane body: it lies in the plane z = 0 of the rest frame, moves only in the plane of
+    the world into which ``xform`` turns that, and resists as plane strain does. What of gravity, velocities, forces and
+    contacts sticks out of the plane does not act on it.
+
     Args:
         builder: The model builder, with ``SolverCageCut.register_custom_attributes`` called.
         cage: The cage, in its rest frame [m].
         mesh: The embedded surface, wholly inside the cage: a ``Surface``, a ``newton.Mesh``, or points
-            (n, 3) [m] and triangles (m, 3).
+            (n, 3) [m] and triangles (m, 3). In a plane cage a flat ``Surface``, or points (n, 2) and triangles.
         material: The elastic material; the default is soft rubber.
         xform: Pose of the rest frame in the world.
         velocity: Initial velocity [m/s].
@@ -87,6 +94,7 @@ def add_cage_body(
         capacity: Room for cuts; by default enough for several.
         cuttable: Whether the body can be cut. Without, no walk cache is kept.
         contact_radius: Makes the surface points collide as particles of this radius [m]; None for no contact.
+        thickness: Thickness of a plane body [m], which its mass is proportional to; 1 m by default.
         seed: Seed of walks and quadrature.
         label: Name of the body.
         options: Further keyword options of ``HarmonicCoordinates``.
@@ -96,13 +104,15 @@ def add_cage_body(
 
     Raises:
         TypeError: An argument has the wrong type.
-        ValueError: Attributes are not registered, a mesh point lies outside the cage, or a value is out of range.
+        ValueError: Attributes are not registered, a mesh point lies outside the cage, the mesh is not of the cage's
+            dimension, or a value is out of range.
     """
     if not isinstance(cage, Cage):
         raise TypeError(f"cage must be a Cage, got {type(cage).__name__}")
     if f"{FREQUENCY}" not in builder.custom_frequencies:
         raise ValueError("call SolverCageCut.register_custom_attributes(builder) before add_cage_body")
     surface = _surface_of(mesh)
+    thickness = _thickness_of(cage, surface, thickness)
     check_inside(cage, surface.points)
     index = len(builder.custom_attributes["cagecut:definition"].values or [])
     if capacity is None:
@@ -120,14 +130,17 @@ def add_cage_body(
         cuttable=cuttable,
         capacity=capacity,
         contact_radius=contact_radius,
+        thickness=thickness,
         options=options,
     )
-    xform = xform or wp.transform_identity()
-    vertex_start = _add_particles(builder, cage.vertices, capacity.vertices, xform, velocity, radius=0.0, active=False)
+    frame = RestFrame.of_pose(xform or wp.transform_identity())
+    if cage.dimension == 2:
+        velocity = frame.in_plane(np.asarray(velocity, dtype=np.float64))
+    vertex_start = _add_particles(builder, cage.vertices, capacity.vertices, frame, velocity, radius=0.0, active=False)
     surface_start = -1
     if contact_radius is not None:
         points, room = surface.points, capacity.surface_points
-        surface_start = _add_particles(builder, points, room, xform, velocity, radius=contact_radius, active=True)
+        surface_start = _add_particles(builder, points, room, frame, velocity, radius=contact_radius, active=True)
     builder.add_custom_values(
         **{
             # Newton keeps string attributes as the Python objects that they are: the definition rides in one.
@@ -150,6 +163,23 @@ def _surface_of(mesh: Surface | tuple[np.ndarray, np.ndarray] | newton.Mesh) -> 
     raise TypeError(f"mesh must be a Surface, a newton.Mesh or (points, triangles), got {type(mesh).__name__}")
 
 
+def _thickness_of(cage: Cage, surface: Surface, thickness: float | None) -> float | None:
+    """Thickness of a plane body, None of a solid one; refuses what is not of the cage's dimension."""
+    if surface.dimension != cage.dimension:
+        raise ValueError(
+            f"the cage is of dimension {cage.dimension} and the mesh of dimension {surface.dimension}; give mesh "
+            f"points of {cage.dimension} numbers"
+        )
+    if cage.dimension == 3:
+        if thickness is not None:
+            raise ValueError(f"only a plane body has a thickness, and the cage is not plane; got thickness={thickness}")
+        return None
+    thickness = 1.0 if thickness is None else float(thickness)
+    if not (np.isfinite(thickness) and thickness > 0.0):
+        raise ValueError(f"the thickness of a plane body must be positive, got {thickness} m")
+    return thickness
+
+
 def _fixed_mask(fixed: np.ndarray | Sequence[int] | None, vertex_count: int) -> np.ndarray:
     mask = np.zeros(vertex_count, dtype=bool)
     if fixed is None:
@@ -170,7 +200,7 @@ def _add_particles(
     builder: newton.ModelBuilder,
     points: np.ndarray,
     capacity: int,
-    xform: wp.transform,
+    frame: RestFrame,
     velocity: Sequence[float],
     *,
     radius: float,
@@ -178,9 +208,8 @@ def _add_particles(
 ) -> int:
     """Add particles at rest positions and spare ones behind them; returns the first index."""
     start = builder.particle_count
-    rotation = np.array(wp.quat_to_matrix(wp.transform_get_rotation(xform)), dtype=np.float64).reshape(3, 3)
     placed = np.zeros((capacity, 3))
-    placed[: len(points)] = points @ rotation.T + np.array(wp.transform_get_translation(xform), dtype=np.float64)
+    placed[: len(points)] = frame.to_world(points)
     placed[len(points) :] = placed[0]
     flags = np.where(np.arange(capacity) < len(points), int(newton.ParticleFlags.ACTIVE) if active else 0, 0)
     builder.add_particles(

@@ -83,6 +83,7 @@ class BodyDefinition:
         cuttable: Whether it can be cut.
         capacity: Room for cuts.
         contact_radius: Radius of the surface points as Newton's particles [m]; None without contact.
+        thickness: Thickness of a plane body [m]; None for a solid one.
         options: Further options of the harmonic coordinates.
     """
 
@@ -97,4 +98,5 @@ class BodyDefinition:
     cuttable: bool
     capacity: Capacity
     contact_radius: float | None
+    thickness: float | None
     options: dict[str, object]

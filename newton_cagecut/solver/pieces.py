@@ -25,7 +25,7 @@ class BodyPiece:
         faces: Faces of the cage that bound it, ascending, shape (face_count,).
         surface_points: Its surface points, ascending, shape (point_count,).
         surface_triangles: Its surface triangles, ascending, shape (triangle_count,).
-        volume: Volume of its part of the cage [m^3].
+        volume: Volume of its part of the cage, of a plane body area times thickness [m^3].
         mass: Its mass, 0 for a body without elasticity [kg].
     """
 
@@ -51,14 +51,15 @@ def body_pieces(body: CageBody) -> tuple[BodyPiece, ...]:
     rows = body.coordinates.weights[body.surface_row : body.surface_row + len(points)]
     of_point = piece_of_vertex[np.abs(rows).argmax(axis=1)]
     density = body.definition.material.density if body.system is not None else 0.0
+    thickness = body.definition.thickness if body.is_plane else 1.0
     return tuple(
         BodyPiece(
             vertices=piece.vertices,
             faces=piece.faces,
             surface_points=np.flatnonzero(of_point == number),
             surface_triangles=np.flatnonzero(of_point[triangles[:, 0]] == number),
-            volume=piece.volume,
-            mass=density * piece.volume,
+            volume=thickness * piece.volume,
+            mass=density * thickness * piece.volume,
         )
         for number, piece in enumerate(pieces)
     )

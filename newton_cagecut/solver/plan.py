@@ -53,14 +53,8 @@ def plan_of(body: CageBody) -> list[PlanEntry]:
             f"{body.quadrature_count} quadrature points" if elastic else "quadrature=0: the cage is keyframed",
             memory["gradients"],
         ),
-        (
-            "nested walks",
-            body.coordinates.domain.has_nested_faces,
-            "faces with slits or more than four sides"
-            if body.coordinates.domain.has_nested_faces
-            else "all faces are triangles or convex quads",
-            0,
-        ),
+        ("third dimension", not body.is_plane, _space_reason(body), 0),
+        ("nested walks", body.coordinates.domain.has_nested_faces, _faces_reason(body), 0),
         (
             "contact",
             contact,
@@ -69,3 +63,19 @@ def plan_of(body: CageBody) -> list[PlanEntry]:
         ),
     )
     return [PlanEntry(body.label, *row) for row in rows]
+
+
+def _space_reason(body: CageBody) -> str:
+    """Why a body has a third dimension, or has none."""
+    if body.is_plane:
+        return f"a plane cage: plane strain, {body.definition.thickness:g} m thick, no caps"
+    return "the body is solid"
+
+
+def _faces_reason(body: CageBody) -> str:
+    """Why walks go on in faces, or do not."""
+    if body.is_plane:
+        return "all faces are segments"
+    if body.coordinates.domain.has_nested_faces:
+        return "faces with slits or more than four sides"
+    return "all faces are triangles or convex quads"

@@ -19,28 +19,30 @@ SPARE_COUNT = 64
 """Spare points that a body which can be cut reserves."""
 
 _FEWEST = 8
-"""Points that a piece should have, of which four are the least that hold it together."""
+"""Points that a piece should have, of which four, in 2D three, are the least that hold it together."""
 
 _CANDIDATE_COUNT = 4096
 
 
 class Quadrature:
-    """Quadrature points and volumes in a cage's rest frame.
+    """Quadrature points and volumes [m^3] in a cage's rest frame.
 
     Args:
         cage: The cage before any cut.
         count: Wanted number of points.
         spare_count: Points to keep for later pieces.
         seed: Seed of the sample.
+        thickness: Thickness of a plane body [m]; None for a solid one.
     """
 
-    def __init__(self, cage: Cage, count: int, *, spare_count: int, seed: int) -> None:
+    def __init__(self, cage: Cage, count: int, *, spare_count: int, seed: int, thickness: float | None) -> None:
         sampled, volumes = sample_quadrature(cage, count, seed=seed)
         self._used = len(sampled)
         self._rng = np.random.default_rng(seed)
+        self._thickness = 1.0 if thickness is None else thickness
         self._shares = np.concatenate([volumes, np.zeros(spare_count)])
         self.points = np.concatenate([sampled, np.repeat(sampled[:1], spare_count, axis=0)])
-        self.volumes = self._shares.copy()
+        self.volumes = self._thickness * self._shares
 
     def distribute(self, cage: Cage, coordinates: HarmonicCoordinates) -> None:
         """Give every piece of a cage enough points and its own volume.
@@ -58,7 +60,7 @@ class Quadrature:
                 self._shares[own] = 1.0
             total = self._shares[own].sum()
             if total > 0.0:
-                self.volumes[own] = self._shares[own] * (volume / total)
+                self.volumes[own] = self._shares[own] * (self._thickness * volume / total)
 
     def _place(self, cage: Cage, piece: int, count: int, coordinates: HarmonicCoordinates) -> np.ndarray:
         """Move spare points into a piece, away from its faces and from each other; returns their indices."""

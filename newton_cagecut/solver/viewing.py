@@ -22,11 +22,13 @@ class SurfaceViewer:
         self._indices: dict[str, tuple[object, wp.array, wp.array]] = {}
 
     def log(self, viewer: newton.viewer.ViewerBase, body: CageBody, state: newton.State) -> None:
-        """Log one body's skin and caps as two meshes over the same points."""
+        """Log one body's skin and caps as two meshes over the same points; a plane body has no caps."""
         points = body.surface_points(state)
         skin, caps = self._index_buffers(body)
         name = f"/cagecut/{body.label}"
         viewer.log_mesh(f"{name}/skin", points, skin, color=SKIN_COLOR, backface_culling=False, dynamic=True)
+        if body.is_plane:
+            return
         # Before the first cut a hidden triangle stands for the caps, so that no frame shows them too early.
         hidden = caps.size == 0
         viewer.log_mesh(

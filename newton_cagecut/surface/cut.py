@@ -3,7 +3,8 @@
 """Progressive cuts of surfaces.
 
 Section 6.3 of the paper splits the triangles that the cut crosses. Like a cage's, a surface's cut is a pure function of
-the surface before it, the plane and the front; what opens is capped, so that a closed surface stays closed.
+the surface before it, the plane and the front; what opens is capped, so that a closed surface stays closed. A flat mesh
+is cut as the open mesh in space that it is, by the plane that stands on the blade's line.
 """
 
 from __future__ import annotations
@@ -62,16 +63,21 @@ class SurfaceCut:
 
         Args:
             surface: The surface to cut, which may have been cut before.
-            plane: Plane of the cage's cut.
+            plane: Plane of the cage's cut, of the surface's dimension.
             wall: Number of the cage's wall that this cut makes.
             window: Heel, tip and start of the cage's cut, where they are in the plane; None for a blade without [m].
 
         Raises:
             TypeError: If the surface is not a surface.
-            ValueError: If an edge of it has more than two triangles or is not consistently oriented.
+            ValueError: If the plane is of another dimension, or an edge of the surface has more than two triangles or
+                is not consistently oriented.
         """
         if not isinstance(surface, Surface):
             raise TypeError(f"surface must be a Surface, got {type(surface).__name__}")
+        if surface.dimension != plane.dimension:
+            raise ValueError(
+                f"the surface is of dimension {surface.dimension} and the cut's plane of dimension {plane.dimension}"
+            )
         surface.refuse_branches()
         self._identity = object()
         self._begin(surface, plane, wall, window=window)
@@ -86,6 +92,7 @@ class SurfaceCut:
         hinge: Hinge | None = None,
         window: tuple[float, float, float] | None = None,
     ) -> None:
+        plane = plane.in_space()
         section = Section(surface.mesh, plane, face_group=surface.triangle_solid, hinge=hinge)
         if window is not None:
             section = ClippedSection(section, *window, tolerance=0.0)
@@ -94,7 +101,7 @@ class SurfaceCut:
         self.surface = surface
         """The surface as it is now."""
         self.plane = plane
-        """Plane of the cut."""
+        """Plane of the cut, in space."""
         self.wall = int(wall)
         """Number of the wall on which new points lie."""
         self.front = -np.inf
@@ -135,7 +142,7 @@ class SurfaceCut:
         shared = np.isin(np.arange(surface.point_count), surface.triangles[key == 2 * front_wall])
         shared &= np.isin(np.arange(surface.point_count), surface.triangles[key == 2 * front_wall + 1])
         candidates = np.flatnonzero(shared)
-        s = self.plane.coordinates(surface.points[candidates])[:, 1]
+        s = self.plane.coordinates(surface.mesh.vertices[candidates])[:, 1]
         limit = _ON_FRONT * np.ptp(surface.points, axis=0).max()
         on_front[candidates[np.abs(s - self.front) <= limit]] = True
         self._begin(surface, plane, wall, hinge=Hinge.of(surface.mesh, key, front_wall, on_front))
@@ -203,7 +210,7 @@ class SurfaceCut:
         minus, plus = (ids[opening.region.labels] for ids in opening.side_vertices())
         keys[minus[minus != plus] - base.point_count] = 2 * wall
         return Surface._assembled(
-            np.concatenate([base.points, opening.created_positions()]),
+            np.concatenate([base.points, opening.created_positions()[:, : base.dimension]]),
             np.concatenate([kept, added, caps]).astype(np.int32),
             self._carried(opening, base.uvs),
             None if base.normals is None else _unit(self._carried(opening, base.normals)),

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Surfaces: the detailed meshes that a cage carries.
 
-Section 6.3 of the paper calls this the embedded mesh. Positions are in the rest frame.
+Section 6.3 of the paper calls this the embedded mesh. Positions are in the rest frame. What a plane cage carries is a
+flat mesh, whose triangles fill the body; as a mesh in space it lies in the plane z = 0 and is open.
 """
 
 from __future__ import annotations
@@ -12,14 +13,17 @@ from functools import cached_property
 
 import numpy as np
 
-from ..cage import PolygonMesh, Wall
+from ..cage import PolygonMesh, Wall, lifted
 from ..cage.winding import winding_numbers
 
 _CANCELLED = 1e-9
 
 
+_FLAT = 1e-13
+
+
 class Surface:
-    """A triangle mesh at rest, closed or open, with what earlier cuts left on it; immutable."""
+    """A triangle mesh at rest, closed, open or flat, with what earlier cuts left on it; immutable."""
 
     def __init__(
         self,
@@ -34,10 +38,11 @@ class Surface:
         """Validate and build a surface.
 
         Args:
-            points: Rest positions, shape (point_count, 3) [m].
-            triangles: Point ids, counterclockwise seen from outside, shape (triangle_count, 3).
+            points: Rest positions, shape (point_count, 3), or (point_count, 2) in the plane [m].
+            triangles: Point ids, counterclockwise seen from outside, in the plane seen from +z, shape
+                (triangle_count, 3).
             uvs: Texture coordinates of the points, shape (point_count, 2).
-            normals: Unit normals of the points, shape (point_count, 3).
+            normals: Unit normals of the points, shape (point_count, 3); none in the plane.
             triangle_cap: Wall of the cut that each triangle caps, -1 for the original surface, shape (triangle_count,).
             point_key: ``2 * wall + side`` of the wall on which each point lies, -1 inside, shape (point_count,).
 
@@ -45,8 +50,10 @@ class Surface:
             TypeError: If something is not numbers, or the triangles not integers.
             ValueError: If a shape, a value or an index is wrong; the text names the culprit.
         """
-        self.points = _as_floats(points, "points", 3)
+        self.points = _as_floats(points, "points", (3, 2))
         self.triangles = _as_triangles(triangles, len(self.points))
+        if self.dimension == 2:
+            _check_flat(self.points[self.triangles], normals)
         self.uvs = _as_point_values(uvs, "uvs", 2, len(self.points))
         self.normals = _as_point_values(normals, "normals", 3, len(self.points))
         self.triangle_cap = _as_labels(triangle_cap, "triangle_cap", len(self.triangles))
@@ -82,6 +89,11 @@ class Surface:
         return f"Surface(point_count={self.point_count}, triangle_count={self.triangle_count})"
 
     @property
+    def dimension(self) -> int:
+        """Dimension of the space, 2 for a flat mesh or 3."""
+        return self.points.shape[1]
+
+    @property
     def point_count(self) -> int:
         """Number of points."""
         return len(self.points)
@@ -93,9 +105,9 @@ class Surface:
 
     @cached_property
     def mesh(self) -> PolygonMesh:
-        """The triangles with their half-edges."""
+        """The triangles with their half-edges, in space; a flat mesh lies in the plane z = 0."""
         start = np.arange(0, 3 * self.triangle_count + 1, 3)
-        return PolygonMesh(self.points, start, self.triangles.reshape(-1).astype(np.int64))
+        return PolygonMesh(lifted(self.points), start, self.triangles.reshape(-1).astype(np.int64))
 
     @property
     def triangle_key(self) -> np.ndarray:
@@ -104,7 +116,7 @@ class Surface:
 
     @cached_property
     def closed(self) -> bool:
-        """Whether every edge has exactly two triangles that run along it in opposite directions."""
+        """Whether every edge has exactly two triangles that run along it in opposite directions; never in the plane."""
         return bool((self.mesh.twin >= 0).all())
 
     def corner_uvs(self, walls: Sequence[Wall], *, scale: float = 1.0) -> np.ndarray:
@@ -164,11 +176,13 @@ class Surface:
 
     @property
     def volume(self) -> float:
-        """Enclosed volume, meaningful if closed [m^3]."""
-        return float(self.mesh.face_volume.sum())
+        """Enclosed volume, meaningful if closed, in 2D the area of the triangles [m^d]."""
+        return float((self.mesh.face_volume if self.dimension == 3 else self.mesh.face_area_vector[:, 2]).sum())
 
     def directions_inward(self, points: np.ndarray) -> np.ndarray:
-        """Unit vectors from points into the solid around them, away from the skin and from every cap, shape (n, 3).
+        """Unit vectors from points into the solid around them, away from the skin and from every cap.
+
+        Shape (n, dimension).
 
         A point that lies on several cuts belongs to the piece into which this points. It is minus the sum of the
         normals at the point, one for the skin and one for each wall, so that slivers do not matter. Where both sides of
@@ -177,6 +191,8 @@ class Surface:
         Args:
             points: Point ids, shape (n,).
         """
+        if self.dimension == 2:
+            return self._directions_from_border(points)
         row = np.full(self.point_count, -1)
         row[points] = np.arange(len(points))
         around, corner = np.nonzero(row[self.triangles] >= 0)
@@ -189,6 +205,17 @@ class Surface:
         np.add.at(sizes, where, np.linalg.norm(normal, axis=1))
         sums[np.linalg.norm(sums, axis=2) <= _CANCELLED * sizes] = 0.0
         return _unit(-_unit(sums).sum(axis=1))
+
+    def _directions_from_border(self, points: np.ndarray) -> np.ndarray:
+        """The same for a flat mesh: minus the sum of the normals of the border's two edges at each point."""
+        mesh = self.mesh
+        border = mesh.twin < 0
+        start, end = mesh.face_vertex[border], mesh.destination[border]
+        outward = _unit(self.points[end] - self.points[start])[:, ::-1] * [1.0, -1.0]
+        sums = np.zeros((self.point_count, 2))
+        for ends in (start, end):
+            np.add.at(sums, ends, outward)
+        return _unit(-sums[points])
 
     @cached_property
     def triangle_solid(self) -> np.ndarray:
@@ -205,7 +232,7 @@ class Surface:
         if len(inner):
             first = np.unique(mesh.vertex_component, return_index=True)[1][inner]
             triangles = self.triangles.astype(np.int64)
-            number = winding_numbers(self.points[first], self.points, triangles, mesh.face_component, len(volumes))
+            number = winding_numbers(mesh.vertices[first], mesh.vertices, triangles, mesh.face_component, len(volumes))
             around = np.where((number > 0.5) & outward, volumes, np.inf)
             found = np.isfinite(around).any(axis=1)
             solid[inner[found]] = around[found].argmin(axis=1)
@@ -217,13 +244,26 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.where(length > 1.0e-30, length, 1.0)
 
 
-def _as_floats(values: np.ndarray, name: str, width: int) -> np.ndarray:
+def _check_flat(corners: np.ndarray, normals: np.ndarray | None) -> None:
+    """Refuse triangles that are clockwise, and normals; corners have the shape (triangle_count, 3, 2)."""
+    if normals is not None:
+        raise ValueError("a flat surface has no normals of its own; leave them out")
+    (ax, ay), (bx, by) = np.moveaxis(corners[:, 1:] - corners[:, :1], 0, -1)
+    bad = np.flatnonzero(ax * by - ay * bx < -_FLAT * np.ptp(corners, axis=(0, 1)).max() ** 2)
+    if len(bad):
+        raise ValueError(
+            f"triangle {bad[0]} of the flat surface is clockwise ({len(bad)} in all); reverse the order of its points"
+        )
+
+
+def _as_floats(values: np.ndarray, name: str, widths: tuple[int, ...]) -> np.ndarray:
+    shape = ", or ".join(f"(point_count, {width})" for width in widths)
     try:
         array = np.array(values, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise TypeError(f"{name} of the surface must be numbers of shape (point_count, {width}): {error}") from None
-    if array.ndim != 2 or array.shape[1] != width:
-        raise ValueError(f"{name} of the surface must have shape (point_count, {width}), got {array.shape}")
+        raise TypeError(f"{name} of the surface must be numbers of shape {shape}: {error}") from None
+    if array.ndim != 2 or array.shape[1] not in widths:
+        raise ValueError(f"{name} of the surface must have shape {shape}, got {array.shape}")
     bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
     if len(bad):
         raise ValueError(f"{name} of the surface: row {bad[0]} is not finite: {array[bad[0]].tolist()}")
@@ -233,7 +273,7 @@ def _as_floats(values: np.ndarray, name: str, width: int) -> np.ndarray:
 def _as_point_values(values: np.ndarray | None, name: str, width: int, count: int) -> np.ndarray | None:
     if values is None:
         return None
-    array = _as_floats(values, name, width)
+    array = _as_floats(values, name, (width,))
     if len(array) != count:
         raise ValueError(f"the surface has {count} points but {len(array)} {name}; give each one")
     return array

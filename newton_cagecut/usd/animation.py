@@ -21,9 +21,9 @@ from .mesh_data import check_mesh
 class AnimationWriter:
     """Writes bodies frame by frame to a USD file.
 
-    Each body is ``/World/<name>`` with the mesh ``surface``, its subset ``cap`` and the guide mesh ``cage``. Points,
-    normals and extents have a sample in every frame, the topology where it changes. As a context manager it writes
-    the file on the way out, after an error too, with the frames so far.
+    Each body is ``/World/<name>`` with the mesh ``surface``, its subset ``cap`` and the guide ``cage``, a mesh or, of a
+    plane body, curves. Points, normals and extents have a sample in every frame, the topology where it changes. As a
+    context manager it writes the file on the way out, after an error too, with the frames so far.
 
     Args:
         path: A file that ends in .usd, .usda or .usdc; its folder exists.

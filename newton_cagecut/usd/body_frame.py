@@ -11,6 +11,7 @@ import numpy as np
 
 from .layers import flat_faces
 from .mesh_data import check_mesh
+from .outline import outline_loops
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -19,14 +20,14 @@ class BodyFrame:
 
     Attributes:
         name: Name of the body, the same in all frames.
-        points: Vertices of the surface [m], shape ``(n, 3)``.
+        points: Vertices of the surface [m], shape ``(n, 3)``, also of a plane body.
         triangles: Triangles of the surface, shape ``(m, 3)``.
         triangle_cap: The wall of the cut whose cap a triangle belongs to, or -1 on the skin, shape ``(m,)``.
             ``None``: all skin.
         rest_points: Vertices of the surface at rest [m], shape ``(n, 3)``, which tell the two sides of a cut apart
             however far they have come. ``None``: ``points`` tell them. Read when the triangles change.
         cage_points: Vertices of the cage [m], shape ``(k, 3)``, or ``None`` for no cage.
-        cage_faces: Polygons of the cage.
+        cage_faces: Polygons of the cage, or the segments of a plane one.
         skin_color: Linear RGB of the skin. Read at the first frame of the body.
         cap_color: Linear RGB of the caps. Read at the first frame of the body.
     """
@@ -40,6 +41,11 @@ class BodyFrame:
     cage_faces: Sequence[Sequence[int]] = ()
     skin_color: tuple[float, float, float] = (0.83, 0.30, 0.10)
     cap_color: tuple[float, float, float] = (0.95, 0.72, 0.52)
+
+    @property
+    def has_plane_cage(self) -> bool:
+        """Whether the cage is made of segments."""
+        return len(self.cage_faces) > 0 and len(self.cage_faces[0]) == 2
 
     def checked(self) -> BodyFrame:
         """Return the frame as NumPy arrays of the right types.
@@ -63,7 +69,10 @@ class BodyFrame:
         cage_points = self.cage_points
         if cage_points is not None:
             cage_points = _points(f"body {self.name}: cage_points", cage_points)
-            check_mesh(f"the cage of body {self.name}", cage_points, *flat_faces(self.cage_faces))
+            if self.has_plane_cage:
+                outline_loops(f"the cage of body {self.name}", self.cage_faces, len(cage_points))
+            else:
+                check_mesh(f"the cage of body {self.name}", cage_points, *flat_faces(self.cage_faces))
         surface = {"points": points, "triangles": triangles, "triangle_cap": cap, "rest_points": rest_points}
         return replace(self, **surface, cage_points=cage_points)
 

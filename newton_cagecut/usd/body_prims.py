@@ -11,15 +11,35 @@ from .body_frame import BodyFrame
 from .layers import color, extent, flat_faces, integers, vectors
 from .materials import bind_material
 from .normals import split_caps, vertex_normals
+from .outline import define_outline, outline_loops
 
 _CAGE_COLOR = (0.25, 0.45, 0.85)
 
 
-class SampledMesh:
-    """A mesh prim whose topology gets a sample in the frames where it changes.
+class SampledPoints:
+    """A prim whose points get a sample in every frame.
 
     Between two samples with different numbers of points USD holds the points of the first but interpolates the
     extent. So the extent of the second holds both.
+
+    Args:
+        prim: The prim.
+    """
+
+    def __init__(self, prim: UsdGeom.PointBased):
+        self._prim = prim
+        self._points = np.zeros((0, 3))
+
+    def write_points(self, frame: float, points: np.ndarray) -> None:
+        """Write a sample."""
+        resized = len(points) != len(self._points)
+        self._prim.GetPointsAttr().Set(vectors(points), frame)
+        self._prim.GetExtentAttr().Set(extent(np.concatenate([self._points, points]) if resized else points), frame)
+        self._points = points
+
+
+class SampledMesh(SampledPoints):
+    """A mesh prim, seen from both sides, whose topology gets a sample in the frames where it changes.
 
     Args:
         stage: The stage.
@@ -29,19 +49,39 @@ class SampledMesh:
     def __init__(self, stage: Usd.Stage, path: str):
         self.mesh = UsdGeom.Mesh.Define(stage, path)
         self.mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
-        self._points = np.zeros((0, 3))
+        self.mesh.CreateDoubleSidedAttr(True)
         self._counts = self._indices = np.zeros(0, dtype=np.int32)
+        super().__init__(self.mesh)
 
     def write(self, frame: float, points: np.ndarray, counts: np.ndarray, indices: np.ndarray) -> None:
         """Write a sample."""
-        resized = len(points) != len(self._points)
-        self.mesh.GetPointsAttr().Set(vectors(points), frame)
-        self.mesh.GetExtentAttr().Set(extent(np.concatenate([self._points, points]) if resized else points), frame)
-        self._points = points
+        self.write_points(frame, points)
         if not (np.array_equal(counts, self._counts) and np.array_equal(indices, self._indices)):
             self.mesh.GetFaceVertexCountsAttr().Set(integers(counts), frame)
             self.mesh.GetFaceVertexIndicesAttr().Set(integers(indices), frame)
             self._counts, self._indices = counts, indices
+
+
+class SampledOutline(SampledPoints):
+    """The curves of a plane cage, whose counts get a sample in the frames where they change.
+
+    Args:
+        stage: The stage.
+        path: Path of the prim, which is made.
+    """
+
+    def __init__(self, stage: Usd.Stage, path: str):
+        self.curves = define_outline(stage, path)
+        self._sizes: list[int] = []
+        super().__init__(self.curves)
+
+    def write(self, frame: float, points: np.ndarray, loops: tuple[np.ndarray, ...]) -> None:
+        """Write a sample."""
+        self.write_points(frame, points[np.concatenate(loops)])
+        sizes = [len(loop) for loop in loops]
+        if sizes != self._sizes:
+            self.curves.GetCurveVertexCountsAttr().Set(integers(sizes), frame)
+            self._sizes = sizes
 
 
 class BodyPrims:
@@ -61,7 +101,7 @@ class BodyPrims:
             root.GetVisibilityAttr().Set(UsdGeom.Tokens.invisible, stage.GetStartTimeCode())
             root.GetVisibilityAttr().Set(UsdGeom.Tokens.inherited, since)
         self._stage, self._path, self._normals = stage, path, normals
-        self._cage: SampledMesh | None = None
+        self._cage: SampledMesh | SampledOutline | None = None
         self._surface = SampledMesh(stage, f"{path}/surface")
         mesh = self._surface.mesh
         if normals:
@@ -93,8 +133,7 @@ class BodyPrims:
         if self._normals:
             self._surface.mesh.GetNormalsAttr().Set(vectors(vertex_normals(points, self._triangles)), frame)
         if body.cage_points is not None:
-            cage = self._cage or self._new_cage()
-            cage.write(frame, body.cage_points * scale, *flat_faces(body.cage_faces))
+            self._write_cage(frame, body, scale)
 
     def _change_topology(self, frame: float, body: BodyFrame) -> None:
         """Take over other triangles or caps."""
@@ -105,11 +144,18 @@ class BodyPrims:
         self._cap.GetIndicesAttr().Set(integers(np.flatnonzero(is_cap)), frame)
         self._colors.CreateIndicesAttr().Set(integers(is_cap), frame)
 
-    def _new_cage(self) -> SampledMesh:
-        """Make the prim of the cage."""
-        self._cage = SampledMesh(self._stage, f"{self._path}/cage")
-        self._cage.mesh.CreatePurposeAttr(UsdGeom.Tokens.guide)
-        self._cage.mesh.CreateDoubleSidedAttr(True)
-        self._cage.mesh.CreateDisplayColorAttr([color(_CAGE_COLOR)])
-        self._cage.mesh.CreateDisplayOpacityPrimvar(UsdGeom.Tokens.constant).Set(Vt.FloatArray([0.25]))
-        return self._cage
+    def _write_cage(self, frame: float, body: BodyFrame, scale: float) -> None:
+        """Write the cage: a mesh, or the outlines of a plane one."""
+        points, path = body.cage_points * scale, f"{self._path}/cage"
+        if body.has_plane_cage:
+            if self._cage is None:
+                self._cage = SampledOutline(self._stage, path)
+                self._cage.curves.CreateDisplayColorAttr([color(_CAGE_COLOR)])
+            self._cage.write(frame, points, outline_loops("the cage", body.cage_faces, len(points)))
+            return
+        if self._cage is None:
+            self._cage = SampledMesh(self._stage, path)
+            self._cage.mesh.CreatePurposeAttr(UsdGeom.Tokens.guide)
+            self._cage.mesh.CreateDisplayColorAttr([color(_CAGE_COLOR)])
+            self._cage.mesh.CreateDisplayOpacityPrimvar(UsdGeom.Tokens.constant).Set(Vt.FloatArray([0.25]))
+        self._cage.write(frame, points, *flat_faces(body.cage_faces))

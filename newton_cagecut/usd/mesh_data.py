@@ -40,9 +40,7 @@ class MeshData:
 
     def turned(self, up_axis: str) -> MeshData:
         """The mesh rotated about x so that this axis, ``"Y"`` or ``"Z"``, points up."""
-        if up_axis == self.up_axis:
-            return self
-        return replace(self, points=self.points @ (_Y_TO_Z.T if up_axis == "Z" else _Y_TO_Z), up_axis=up_axis)
+        return replace(self, points=turn_up(self.points, self.up_axis, up_axis), up_axis=up_axis)
 
     def _face_triangles(self, face: tuple[int, ...]) -> np.ndarray:
         """Return the triangles of one polygon, cut in the plane that fits it best."""
@@ -56,6 +54,19 @@ class MeshData:
         if normal[drop] < 0:
             flat = flat * (-1.0, 1.0)
         return ids[triangulate(flat)]
+
+
+def turn_up(points: np.ndarray, up_axis: str, wanted: str) -> np.ndarray:
+    """Return points rotated about x from one up axis, ``"Y"`` or ``"Z"``, to another one.
+
+    Args:
+        points: The points, shape ``(n, 3)``.
+        up_axis: The axis of them that points up.
+        wanted: The axis that is to point up.
+    """
+    if wanted == up_axis:
+        return points
+    return points @ (_Y_TO_Z.T if wanted == "Z" else _Y_TO_Z)
 
 
 def check_mesh(label: str, points: np.ndarray, counts: np.ndarray, indices: np.ndarray) -> None:

@@ -13,7 +13,8 @@ from pxr import Sdf, Tf, Usd, UsdGeom
 
 from ..cage import Cage
 from ..surface import Surface
-from .mesh_data import MeshData, check_mesh
+from .mesh_data import MeshData, check_mesh, turn_up
+from .outline import flat_points, read_outline
 
 _SEAM_TOLERANCE = 1e-5  # of texture space: corners of one vertex that agree to this are one texture coordinate
 
@@ -39,23 +40,19 @@ def read_mesh(
         FileNotFoundError: There is no such file.
         ValueError: The file is no USD, the mesh cannot be told, or it is empty or invalid.
     """
-    if up_axis not in (None, "Y", "Z"):
-        raise ValueError(f'up_axis must be "Y", "Z" or None, got {up_axis!r}')
-    stage = source if isinstance(source, Usd.Stage) else _open_stage(fspath(source))
-    mesh = _find_mesh(stage, prim_path)
+    stage = _open_stage(source)
+    mesh = UsdGeom.Mesh(_find_prim(stage, prim_path, UsdGeom.Mesh))
     label = f"mesh {mesh.GetPath()} of {stage.GetRootLayer().identifier}"
     points, counts, indices = _arrays(mesh)
     check_mesh(label, points, counts, indices)
-    transform = np.array(UsdGeom.Xformable(mesh).ComputeLocalToWorldTransform(Usd.TimeCode.EarliestTime()))
+    placed, mirrored = _place(mesh, points, up_axis)
     starts = np.cumsum(counts)[:-1]
     faces = tuple(tuple(int(i) for i in face) for face in np.split(indices, starts))
     left_handed = mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded
-    if left_handed != (np.linalg.det(transform[:3, :3]) < 0.0):
+    if left_handed != mirrored:
         faces = tuple(face[::-1] for face in faces)
-    points = (points @ transform[:3, :3] + transform[3, :3]) * UsdGeom.GetStageMetersPerUnit(stage)
-    stage_axis = str(UsdGeom.GetStageUpAxis(stage))
     uvs = _texture_coordinates(mesh, label, len(points), indices)
-    return MeshData(points, faces, uvs, mesh.GetPrim().GetName(), stage_axis).turned(up_axis or stage_axis)
+    return MeshData(placed, faces, uvs, mesh.GetPrim().GetName(), up_axis or str(UsdGeom.GetStageUpAxis(stage)))
 
 
 def read_cage(
@@ -63,9 +60,12 @@ def read_cage(
 ) -> Cage:
     """Read a mesh as a cage; its polygons become the cage's faces.
 
+    Where there is no mesh, linear and periodic ``BasisCurves`` are read as a plane cage: each curve is a loop of
+    segments. They lie in a plane normal to z; with the outer loops clockwise, all are reversed.
+
     Args:
         source: As in :func:`read_mesh`.
-        prim_path: As in :func:`read_mesh`.
+        prim_path: As in :func:`read_mesh`, or the curves.
         up_axis: As in :func:`read_mesh`.
         options: Keyword arguments of :class:`~newton_cagecut.cage.Cage`.
 
@@ -74,14 +74,26 @@ def read_cage(
 
     Raises:
         FileNotFoundError: There is no such file.
-        ValueError: As in :func:`read_mesh`, or the mesh is no valid cage.
+        ValueError: As in :func:`read_mesh`, or the mesh or the curves are no valid cage.
     """
-    mesh = read_mesh(source, prim_path, up_axis=up_axis)
-    return Cage(mesh.points, mesh.faces, **options)
+    stage = _open_stage(source)
+    if _prims(stage, prim_path, UsdGeom.Mesh) or not _prims(stage, prim_path, UsdGeom.BasisCurves):
+        mesh = read_mesh(stage, prim_path, up_axis=up_axis)
+        return Cage(mesh.points, mesh.faces, **options)
+    curves = UsdGeom.BasisCurves(_find_prim(stage, prim_path, UsdGeom.BasisCurves))
+    label = f"curves {curves.GetPath()} of {stage.GetRootLayer().identifier}"
+    points, segments = read_outline(label, curves)
+    points = flat_points(label, _place(curves, points, up_axis)[0])
+    return Cage(points, _counterclockwise(points, segments), **options)
 
 
 def read_surface(
-    source: str | PathLike | Usd.Stage, prim_path: str | None = None, *, up_axis: str | None = None, **options
+    source: str | PathLike | Usd.Stage,
+    prim_path: str | None = None,
+    *,
+    up_axis: str | None = None,
+    flat: bool = False,
+    **options,
 ) -> Surface:
     """Read a mesh as a surface to embed; polygons are cut into triangles.
 
@@ -89,6 +101,8 @@ def read_surface(
         source: As in :func:`read_mesh`.
         prim_path: As in :func:`read_mesh`.
         up_axis: As in :func:`read_mesh`.
+        flat: Whether to read a mesh that lies in a plane normal to z as the surface of a plane cage. If it faces -z,
+            all its triangles are reversed.
         options: Keyword arguments of :class:`~newton_cagecut.surface.Surface`.
 
     Returns:
@@ -96,14 +110,28 @@ def read_surface(
 
     Raises:
         FileNotFoundError: There is no such file.
-        ValueError: As in :func:`read_mesh`, or the mesh is no valid surface.
+        ValueError: As in :func:`read_mesh`, or the mesh is no valid surface, or not flat where it should be.
     """
     mesh = read_mesh(source, prim_path, up_axis=up_axis)
-    return Surface(mesh.points, mesh.triangles, uvs=mesh.uvs, **options)
+    points, triangles = mesh.points, mesh.triangles
+    if flat:
+        points = flat_points(f"mesh {mesh.name}", points)
+        triangles = _counterclockwise(points, triangles)
+    return Surface(points, triangles, uvs=mesh.uvs, **options)
 
 
-def _open_stage(path: str) -> Usd.Stage:
+def _counterclockwise(points: np.ndarray, loops: np.ndarray) -> np.ndarray:
+    """Return segments around, or triangles of, an area in the plane, all reversed where it is negative."""
+    edges = loops if loops.shape[1] == 2 else loops[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    (ax, ay), (bx, by) = np.moveaxis(points[edges] - points.mean(axis=0), 0, -1)
+    return loops[:, ::-1] if (ax * by - ay * bx).sum() < 0.0 else loops
+
+
+def _open_stage(source: str | PathLike | Usd.Stage) -> Usd.Stage:
     """Open a file, with errors of Python in the place of USD's."""
+    if isinstance(source, Usd.Stage):
+        return source
+    path = fspath(source)
     if not os.path.exists(path):
         raise FileNotFoundError(f"no such USD file: {path}")
     try:
@@ -112,23 +140,42 @@ def _open_stage(path: str) -> Usd.Stage:
         raise ValueError(f"{path} cannot be read as USD: {error}") from error
 
 
-def _find_mesh(stage: Usd.Stage, prim_path: str | None) -> UsdGeom.Mesh:
-    """Return the one mesh at or below ``prim_path``; tell which ones there are where it is not one."""
-    every = [prim for prim in stage.Traverse(Usd.TraverseInstanceProxies()) if prim.IsA(UsdGeom.Mesh)]
-    listed = ", ".join(str(prim.GetPath()) for prim in every) or "none"
-    label = stage.GetRootLayer().identifier
-    found = every
-    if prim_path is not None:
-        if not Sdf.Path.IsValidPathString(prim_path)[0] or not stage.GetPrimAtPath(prim_path):
-            raise ValueError(f"{label} has no prim {prim_path}; its meshes: {listed}")
-        found = [prim for prim in every if prim.GetPath().HasPrefix(prim_path)]
+def _prims(stage: Usd.Stage, prim_path: str | None, kind: type) -> list[Usd.Prim]:
+    """Return the prims of a kind at or below ``prim_path``, or of all the stage."""
+    every = [prim for prim in stage.Traverse(Usd.TraverseInstanceProxies()) if prim.IsA(kind)]
+    if prim_path is None:
+        return every
+    if not Sdf.Path.IsValidPathString(prim_path)[0] or not stage.GetPrimAtPath(prim_path):
+        meshes = _listed(_prims(stage, None, UsdGeom.Mesh))
+        raise ValueError(f"{stage.GetRootLayer().identifier} has no prim {prim_path}; its meshes: {meshes}")
+    return [prim for prim in every if prim.GetPath().HasPrefix(prim_path)]
+
+
+def _find_prim(stage: Usd.Stage, prim_path: str | None, kind: type) -> Usd.Prim:
+    """Return the one prim of a kind at or below ``prim_path``; tell which ones there are where it is not one."""
+    found, label = _prims(stage, prim_path, kind), stage.GetRootLayer().identifier
     if not found:
         place = f"no mesh at or below {prim_path}" if prim_path else "no mesh"
-        raise ValueError(f"{label} has {place}; its meshes: {listed}")
+        raise ValueError(f"{label} has {place}; its meshes: {_listed(_prims(stage, None, UsdGeom.Mesh))}")
     if len(found) > 1:
-        names = ", ".join(str(prim.GetPath()) for prim in found)
-        raise ValueError(f"{label} has {len(found)} meshes; choose one by its path (prim_path, --prim): {names}")
-    return UsdGeom.Mesh(found[0])
+        what = f"{len(found)} {'meshes' if kind is UsdGeom.Mesh else 'prims of curves'}"
+        raise ValueError(f"{label} has {what}; choose one by its path (prim_path, --prim): {_listed(found)}")
+    return found[0]
+
+
+def _listed(prims: list[Usd.Prim]) -> str:
+    return ", ".join(str(prim.GetPath()) for prim in prims) or "none"
+
+
+def _place(prim: UsdGeom.PointBased, points: np.ndarray, up_axis: str | None) -> tuple[np.ndarray, bool]:
+    """Return points of a prim in world space [m], turned to an up axis, and whether the world mirrors the prim."""
+    if up_axis not in (None, "Y", "Z"):
+        raise ValueError(f'up_axis must be "Y", "Z" or None, got {up_axis!r}')
+    stage = prim.GetPrim().GetStage()
+    transform = np.array(prim.ComputeLocalToWorldTransform(Usd.TimeCode.EarliestTime()))
+    placed = (points @ transform[:3, :3] + transform[3, :3]) * UsdGeom.GetStageMetersPerUnit(stage)
+    stage_axis = str(UsdGeom.GetStageUpAxis(stage))
+    return turn_up(placed, stage_axis, up_axis or stage_axis), bool(np.linalg.det(transform[:3, :3]) < 0.0)
 
 
 def _arrays(mesh: UsdGeom.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

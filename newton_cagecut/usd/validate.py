@@ -11,7 +11,7 @@ from pxr import Usd, UsdGeom
 
 
 def validate_animation(source: str | PathLike | Usd.Stage) -> list[str]:
-    """Return what is wrong with the meshes of a file, at each of their samples and between them.
+    """Return what is wrong with the meshes and curves of a file, at each of their samples and between them.
 
     Checked are the stage's metrics, topology, finite points, the lengths of normals and display colours, extents and
     subsets. ``usdchecker`` checks none of that.
@@ -25,10 +25,10 @@ def validate_animation(source: str | PathLike | Usd.Stage) -> list[str]:
     stage = source if isinstance(source, Usd.Stage) else Usd.Stage.Open(fspath(source))
     problems = _stage_problems(stage)
     for prim in stage.Traverse(Usd.TraverseInstanceProxies()):
-        if prim.IsA(UsdGeom.Mesh):
-            for time in _times(stage, prim):
+        for kind, find_problems in ((UsdGeom.Mesh, _mesh_problems), (UsdGeom.BasisCurves, _curve_problems)):
+            for time in _times(stage, prim) if prim.IsA(kind) else ():
                 where = f"{prim.GetPath()} at {time}"
-                problems += [f"{where}: {problem}" for problem in _mesh_problems(UsdGeom.Mesh(prim), time)]
+                problems += [f"{where}: {problem}" for problem in find_problems(kind(prim), time)]
     return problems
 
 
@@ -77,6 +77,17 @@ def _mesh_problems(mesh: UsdGeom.Mesh, time: float) -> list[str]:
     return problems + _extent_problem(mesh, points, time) + _subset_problems(mesh, len(counts), time)
 
 
+def _curve_problems(curves: UsdGeom.BasisCurves, time: float) -> list[str]:
+    """Return what is wrong with periodic curves at one time."""
+    points = np.array(curves.GetPointsAttr().Get(time) or [], dtype=np.float64).reshape(-1, 3)
+    sizes = np.array(curves.GetCurveVertexCountsAttr().Get(time) or [], dtype=np.int64)
+    if len(points) == 0 or sizes.sum() != len(points) or sizes.min() < 3:
+        return [f"curves of {sizes.tolist()} points do not go round {len(points)} points"]
+    if not np.isfinite(points).all():
+        return ["points are not finite"]
+    return _extent_problem(curves, points, time)
+
+
 def _length_problem(name: str, values, sizes: dict[str, int], interpolation: str) -> list[str]:
     """Return whether an attribute has another length than its interpolation asks for."""
     if values is None or len(values) == sizes[interpolation]:
@@ -84,9 +95,9 @@ def _length_problem(name: str, values, sizes: dict[str, int], interpolation: str
     return [f"{name} has {len(values)} values, {interpolation} needs {sizes[interpolation]}"]
 
 
-def _extent_problem(mesh: UsdGeom.Mesh, points: np.ndarray, time: float) -> list[str]:
+def _extent_problem(prim: UsdGeom.PointBased, points: np.ndarray, time: float) -> list[str]:
     """Return whether the extent is missing or leaves points out."""
-    box = np.array(mesh.GetExtentAttr().Get(time) or [])
+    box = np.array(prim.GetExtentAttr().Get(time) or [])
     if box.shape != (2, 3):
         return ["it has no extent"]
     slack = 1e-5 * np.linalg.norm(box[1] - box[0])

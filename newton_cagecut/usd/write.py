@@ -8,11 +8,12 @@ from collections.abc import Sequence
 from os import PathLike
 
 import numpy as np
-from pxr import Sdf, Tf, UsdGeom, Vt
+from pxr import Sdf, Tf, Usd, UsdGeom, Vt
 
-from ..cage import Cage
+from ..cage import Cage, lifted
 from .layers import checked_path, export_stage, extent, flat_faces, integers, new_stage, vectors
 from .mesh_data import check_mesh
+from .outline import define_outline, outline_loops
 
 
 def write_mesh(
@@ -47,8 +48,7 @@ def write_mesh(
     points = np.asarray(points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 3:
         raise ValueError(f"points must have shape (n, 3), got {points.shape}")
-    if not Tf.IsValidIdentifier(name):
-        raise ValueError(f"{name!r} is no name for a USD prim; {Tf.MakeValidIdentifier(name)!r} would be")
+    _check_name(name)
     counts, indices = flat_faces(faces if isinstance(faces, np.ndarray) else tuple(faces))
     check_mesh(f"mesh {name}", points, counts, indices)
     stage = new_stage(up_axis, meters_per_unit)
@@ -71,7 +71,7 @@ def write_mesh(
 def write_cage(
     path: str | PathLike, cage: Cage, *, name: str = "cage", up_axis: str = "Z", meters_per_unit: float = 1.0
 ) -> None:
-    """Write a cage as a guide mesh; :func:`read_cage` reads it back.
+    """Write a cage as a guide mesh, a plane one as guide curves; :func:`read_cage` reads it back.
 
     Args:
         path: A file that ends in .usd, .usda or .usdc; its folder exists.
@@ -83,8 +83,11 @@ def write_cage(
     Raises:
         FileNotFoundError: The folder does not exist.
         OSError: The file cannot be written.
-        ValueError: An argument is none of those named above, or the cage is not three-dimensional.
+        ValueError: An argument is none of those named above.
     """
+    if cage.dimension == 2:
+        _write_outline(checked_path(path), cage, name, new_stage(up_axis, meters_per_unit), meters_per_unit)
+        return
     write_mesh(
         path,
         cage.vertices,
@@ -94,3 +97,20 @@ def write_cage(
         up_axis=up_axis,
         meters_per_unit=meters_per_unit,
     )
+
+
+def _write_outline(path: str, cage: Cage, name: str, stage: Usd.Stage, meters_per_unit: float) -> None:
+    """Write the loops of a plane cage."""
+    _check_name(name)
+    loops = outline_loops("the cage", cage.faces, cage.vertex_count)
+    points = lifted(cage.vertices)[np.concatenate(loops)] / meters_per_unit
+    curves = define_outline(stage, f"/World/{name}")
+    curves.CreatePointsAttr(vectors(points))
+    curves.CreateCurveVertexCountsAttr(integers([len(loop) for loop in loops]))
+    curves.CreateExtentAttr(extent(points))
+    export_stage(stage, path)
+
+
+def _check_name(name: str) -> None:
+    if not Tf.IsValidIdentifier(name):
+        raise ValueError(f"{name!r} is no name for a USD prim; {Tf.MakeValidIdentifier(name)!r} would be")
