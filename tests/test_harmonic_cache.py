@@ -12,6 +12,7 @@ from cage_shapes import box
 from harmonic_shapes import assert_identical, interior_points, middle_cut, snapshot
 from newton_cagecut.cage import Cage
 from newton_cagecut.harmonic import Domain, HarmonicCoordinates
+from plane_shapes import PLANES
 
 WALKS = 64
 
@@ -36,6 +37,15 @@ def test_a_walk_takes_64_bytes(points):
     assert rows == 64 * 30 * WALKS
     assert memory["weights"] == 4 * 40 * 8
     assert memory["gradients"] == 12 * 30 * 8
+
+
+def test_a_walk_in_the_plane_takes_32_bytes():
+    """In 2D landings and bounds take 32 bytes a walk: no third coordinate, no edges of faces."""
+    cage = PLANES["star"]()
+    coordinates = bake(cage, interior_points(cage, 20, np.random.default_rng(2)))
+    memory = coordinates.memory()
+    assert memory["landings"] + memory["bounds"] == 32 * 20 * WALKS
+    assert sum(values.nbytes for values in (*coordinates.landings.values(), coordinates.bounds)) == 32 * 20 * WALKS
 
 
 def test_nothing_is_kept_without_cuttable(points, monkeypatch):

@@ -20,13 +20,14 @@ from harmonic_shapes import (
 )
 from newton_cagecut.cage import Blade, Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from plane_shapes import PLANES
 
 
-@pytest.mark.parametrize("name", ["tetrahedron", "box", "merged_cube", "star_prism"])
+@pytest.mark.parametrize("name", ["tetrahedron", "box", "merged_cube", "star_prism", "annulus", "comb", "star"])
 def test_rest_shape_is_reproduced(name):
     """Weights sum to 1 and give the rest position, gradients leave rigid motions free, before and after cuts."""
     rng = np.random.default_rng(1)
-    cage = SHAPES[name]()
+    cage = {**SHAPES, **PLANES}[name]()
     points = interior_points(cage, 60, rng)
     coordinates = HarmonicCoordinates(cage, points, 64, gradients=True)
     assert_reproduces(coordinates, points)
@@ -90,7 +91,7 @@ def test_few_walks_do_not_extrapolate(walks):
     assert_reproduces(coordinates, points)
 
 
-@pytest.mark.parametrize("make", [box, star_prism])
+@pytest.mark.parametrize("make", [box, star_prism, PLANES["square"], PLANES["holed_square"]])
 def test_other_pieces_have_no_weight(make):
     """After complete cuts the weights and gradients of other pieces' vertices are zero exactly."""
     rng = np.random.default_rng(4)
@@ -98,7 +99,11 @@ def test_other_pieces_have_no_weight(make):
     points = interior_points(cage, 80, rng)
     coordinates = HarmonicCoordinates(cage, points, 64, gradients=True)
     for normal in ([1.0, 0.1, 0.0], [0.1, 1.0, 0.2]):
-        cut = Cut(cage, Blade(cage.vertices.mean(axis=0) + 0.02, np.cross(normal, [0.0, 0.1, 1.0]), [0.0, 0.1, 1.0]))
+        middle = cage.vertices.mean(axis=0) + 0.02
+        if cage.dimension == 2:
+            cut = Cut(cage, Blade(middle, normal[:2]))
+        else:
+            cut = Cut(cage, Blade(middle, np.cross(normal, [0.0, 0.1, 1.0]), [0.0, 0.1, 1.0]))
         for depth in (0.6, 1.1):
             coordinates.update(cut.advance(to=depth * cut.length))
         cage = cut.cage

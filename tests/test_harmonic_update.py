@@ -21,6 +21,7 @@ from harmonic_shapes import (
 )
 from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from plane_shapes import PLANES
 
 RANDOM = settings(
     max_examples=10, deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]
@@ -46,13 +47,13 @@ def follow(coordinates: HarmonicCoordinates, cut: Cut, depths: np.ndarray) -> li
     return edits
 
 
-@pytest.mark.parametrize("name", ["tetrahedron", "box", "merged_cube"])
+@pytest.mark.parametrize("name", ["tetrahedron", "box", "merged_cube", "square", "holed_square", "star"])
 @RANDOM
 @given(seed=st.integers(0, 2**32 - 1))
 def test_update_equals_recompute(name, seed):
     """Two random cuts, the second through the first, in random steps; some points next to the walls."""
     rng = np.random.default_rng(seed)
-    cage = SHAPES[name]()
+    cage = {**SHAPES, **PLANES}[name]()
     points = interior_points(cage, 40, rng)
     coordinates = bake(cage, points)
     first = Cut(cage, random_blade(rng, cage))
@@ -64,11 +65,12 @@ def test_update_equals_recompute(name, seed):
     assert_reproduces(coordinates, points)
 
 
+@pytest.mark.parametrize("make", [box, PLANES["star"]])
 @pytest.mark.parametrize("device", DEVICES)
-def test_devices(device):
+def test_devices(device, make):
     """The identity holds on every device that there is."""
     rng = np.random.default_rng(3)
-    cage = box()
+    cage = make()
     coordinates = bake(cage, interior_points(cage, 60, rng), device=device)
     cut = Cut(cage, random_blade(rng, cage))
     follow(coordinates, cut, np.linspace(0.1, 1.1, 5) * cut.length)
