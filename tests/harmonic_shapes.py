@@ -87,6 +87,19 @@ def assert_reproduces(coordinates: HarmonicCoordinates, points: np.ndarray, *, g
         assert (np.abs(identity - np.eye(cage.dimension)).max(axis=(1, 2)) <= allowed).all()
 
 
+def mean_value(corners: np.ndarray, point: np.ndarray) -> np.ndarray:
+    """Floater's mean value coordinates of a convex polygon from angles, shape (corner_count,)."""
+    offset = corners - point
+    length = np.linalg.norm(offset, axis=1)
+    if length.min() < 1e-12 * length.max():
+        return np.eye(len(corners))[length.argmin()]
+    after = np.roll(offset, -1, axis=0)
+    cosine = np.einsum("ij,ij->i", offset, after) / (length * np.roll(length, -1))
+    tangent = np.tan(np.arccos(np.clip(cosine, -1.0, 1.0)) / 2.0)
+    weight = (np.roll(tangent, 1) + tangent) / length
+    return weight / weight.sum()
+
+
 def trilinear(cage: Cage, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Exact harmonic coordinates of a box and their gradients [1/m], shapes (n, 8) and (n, 8, 3)."""
     low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)

@@ -127,7 +127,7 @@ class HarmonicCoordinates:
 
     @property
     def gradients(self) -> np.ndarray:
-        """The weights' gradients [1/m] of the points that have them, shape (gradient_count, vertex_count, dimension)."""
+        """The weights' gradients [1/m] of points that have them, shape (gradient_count, vertex_count, dimension)."""
         return self._walker.gradients.numpy()[:, : self.cage.vertex_count, : self.domain.dimension].copy()
 
     @property
