@@ -119,6 +119,7 @@ def make_walk_kernel(
             return
         nearest = nothing_yet()
         step = int(0)
+        landed = bool(False)
         walking = bool(True)
         while walking:
             nearest = nearest_wall(triangles, cells, x, nearest, passed)
@@ -140,8 +141,11 @@ def make_walk_kernel(
                     if points.first_radius[point] != radius:
                         touched[point] = wp.uint8(1)
                 points.first_radius[point] = radius
-            # A point inside the shell still takes its first step, so that its weights reproduce it exactly.
+            # A point inside the shell still takes its first step, so that its weights reproduce it exactly; one that
+            # lies outside, within the cage's tolerance, takes none, which could lead around the cage.
             landed = radius < wp.where(at_start, ON_WALL, epsilon)
+            if at_start and passed == wp.uint32(0) and points.piece[point] < 0:
+                landed = True
             if landed and gate >= 0:
                 if wp.static(gated):
                     x = nearest.point
@@ -164,7 +168,7 @@ def make_walk_kernel(
             if triangles.rows[nearest.triangle].gate >= 0:  # a capped walk lands on a wall all the same
                 nearest = nearest_wall(triangles, cells, x, nothing_yet(), ALL_GATES)
         key = landing_key(triangles, nearest.triangle, x)
-        if wp.sqrt(nearest.distance_squared) >= epsilon:
+        if not landed:
             key = key | CAPPED
         if stream != seed:
             key = key | PASSED
