@@ -60,8 +60,11 @@ def test_field_is_meshed_with_a_wanted_spacing():
     assert 2.0 < np.count_nonzero(points[:, 2] < 0) / np.count_nonzero(points[:, 2] > 0) < 4.5
 
 
+BEND, TWIST = st.floats(-0.25, 0.25), st.floats(-0.03, 0.03)  # planar sides cannot follow much of a twist
+
+
 @settings(max_examples=25, deadline=None)
-@given(st.lists(st.tuples(*[st.floats(-0.25, 0.25)] * 4), min_size=1, max_size=8))
+@given(st.lists(st.tuples(BEND, BEND, TWIST, BEND), min_size=1, max_size=8))
 def test_tube_along_any_gentle_curve_is_of_planar_quads(turns):
     """Rings that turn and grow at random leave a tube whose sides are planar, in rings near the wanted ones."""
     place, frame, wanted = np.zeros(3), np.eye(3), []
