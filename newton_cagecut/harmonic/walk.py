@@ -18,7 +18,7 @@ import warp as wp
 from .bounds_kind import BoundsKind
 from .cells import GridCells
 from .landing import CAPPED, PASSED, landing_type, point_functions
-from .nearest import ALL_GATES, make_nearest, nothing_yet
+from .nearest import ALL_GATES, make_nearest, nearest_at, nothing_yet
 from .points import QueryPoints
 from .random import GATE_STREAM, make_direction
 from .walls import WallTriangles, closest_point_on_triangle
@@ -162,8 +162,8 @@ def make_walk_kernel(
                 x += radius * direction(stream, wp.uint32(point), number, wp.uint32(step))
                 step += 1
                 # Search from the wall that was nearest before: most others are then rejected at once.
-                nearest.point = closest_point_on_triangle(triangles, nearest.triangle, x)
-                nearest.distance_squared = wp.length_sq(x - nearest.point)
+                hint = nearest.triangle
+                nearest = nearest_at(hint, x, closest_point_on_triangle(triangles, hint, x))
         if wp.static(gated):
             if triangles.rows[nearest.triangle].gate >= 0:  # a capped walk lands on a wall all the same
                 nearest = nearest_wall(triangles, cells, x, nothing_yet(), ALL_GATES)
