@@ -9,50 +9,61 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cage_shapes import box
+from cage_shapes import box, random_blade
 from newton_cagecut.cage import Blade, BladePlane, Cut
 from newton_cagecut.surface import Surface, SurfaceCut
-from surface_shapes import SURFACES, bumpy_sphere, check_caps, check_closed, check_outward, icosphere, sphere, torus
+from surface_shapes import (
+    EVERY,
+    around,
+    bumpy_sphere,
+    check_caps,
+    check_closed,
+    check_outward,
+    check_sides,
+    check_surface,
+    disk,
+    flower,
+    icosphere,
+    sphere,
+    torus,
+)
 
 RANDOM = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 
 
-def _random_blade(rng: np.random.Generator) -> Blade:
-    return Blade(rng.uniform(0.25, 0.75, 3), rng.normal(size=3), rng.normal(size=3))
-
-
-@pytest.mark.parametrize("name", SURFACES)
+@pytest.mark.parametrize("name", EVERY)
 @settings(max_examples=5, **RANDOM)
 @given(st.integers(0, 2**32 - 1))
 def test_random_cuts(name, seed):
-    """Random progressive cuts, each crossing the ones before, keep a closed surface of the same volume."""
+    """Random progressive cuts, each crossing the ones before, keep a surface whole and of the same volume or area."""
     rng = np.random.default_rng(seed)
-    surface, cage = SURFACES[name](), box()
-    volume = surface.volume
+    surface = EVERY[name]()
+    cage, volume = around(surface), surface.volume
     for _ in range(2):
-        cut = Cut(cage, _random_blade(rng))
+        cut = Cut(cage, random_blade(rng, cage))
         progress = SurfaceCut(surface, cut.plane, cut.wall)
         for part in (*np.sort(rng.uniform(0.1, 0.9, 2)), *([1.0] if rng.random() < 0.5 else [])):
             step = progress.advance(cut.advance(to=part * cut.length).front)
             before, now = step.before, step.surface
-            check_closed(now, volume)
-            check_caps(now, cut.plane, cut.wall)
-            check_outward(now, name)
+            check_surface(now, volume)
+            check_sides(now, cut.plane, cut.wall)
+            if now.dimension == 3:
+                check_outward(now, name)
             assert step.created.tolist() == list(range(before.point_count, now.point_count))
             moved = (before.points != now.points[: before.point_count]).any(axis=1)
             np.testing.assert_array_equal(step.moved, np.flatnonzero(moved))
         cage, surface = cut.cage, now
 
 
-@pytest.mark.parametrize("name", SURFACES)
+@pytest.mark.parametrize("name", EVERY)
 @settings(max_examples=3, **RANDOM)
 @given(st.integers(0, 2**32 - 1))
 def test_one_step_is_many(name, seed):
     """One advance gives exactly the surface that many give."""
     rng = np.random.default_rng(seed)
-    surface = SURFACES[name]()
+    surface = EVERY[name]()
     for wall in (6, 7):
-        plane = BladePlane.of(_random_blade(rng))
+        plane = BladePlane.of(random_blade(rng, around(surface)))
         many, one = SurfaceCut(surface, plane, wall), SurfaceCut(surface, plane, wall)
         last = rng.uniform(-0.1, 0.4)
         for front in np.linspace(-0.6, last, 7):
@@ -89,10 +100,12 @@ def test_untouched_triangles_stay_in_place():
     np.testing.assert_array_equal(now.triangles[: surface.triangle_count][untouched], surface.triangles[untouched])
 
 
-def test_tips_move_and_nothing_else():
+@pytest.mark.parametrize("make", [bumpy_sphere, flower])
+def test_tips_move_and_nothing_else(make):
     """From step to step only tips move, and they stay on the plane, on the front."""
-    surface = bumpy_sphere()
-    plane = BladePlane.of(Blade([0.5, 0.5, 0.5], [0.1, 0.2, 1], [1, 0, 0.1]))
+    surface = make()
+    vectors = ([0.1, 0.2, 1], [1, 0, 0.1]) if surface.dimension == 3 else ([1, 0.1],)
+    plane = BladePlane.of(Blade(np.full(surface.dimension, 0.5), *vectors))
     cut = SurfaceCut(surface, plane, 6)
     cut.advance(-0.05)
     before = cut.surface
@@ -113,6 +126,19 @@ def test_torus_sliced_flat():
     assert now.mesh.component_count == 2
     euler = now.point_count - now.mesh.edge_count + now.triangle_count
     assert euler == 0
+
+
+def test_points_on_the_line():
+    """A line through points and along edges of a flat mesh, with tips at points, is no trouble."""
+    surface = disk(40, 5)
+    plane = BladePlane.of(Blade([0.5, 0.5], [1, 0]))
+    assert (plane.distance(surface.points) == 0.0).sum() > 4
+    cut = SurfaceCut(surface, plane, 4)
+    for front in (*np.sort(plane.coordinates(surface.points[plane.distance(surface.points) == 0.0])[:, 1]), 2.0):
+        now = cut.advance(front).surface
+        check_surface(now, surface.volume)
+        check_sides(now, plane, 4)
+    assert now.mesh.component_count == 2
 
 
 def test_points_on_the_plane():
@@ -174,6 +200,16 @@ def test_texture_coordinates_follow():
         np.testing.assert_allclose(now.uvs, now.points @ matrix, atol=1e-12)
 
 
+def test_texture_coordinates_follow_in_the_plane():
+    """The same in a flat mesh, where each side of the cut has the coordinates of its own triangles."""
+    surface = flower()
+    matrix = np.linalg.lstsq(surface.points, surface.uvs, rcond=None)[0]
+    cut = SurfaceCut(surface, BladePlane.of(Blade([0.45, 0.5], [0.1, 1])), 4)
+    for front in (-0.2, 0.1, 2.0):
+        now = cut.advance(front).surface
+        np.testing.assert_allclose(now.uvs, now.points @ matrix, atol=1e-12)
+
+
 def test_a_miss_and_empty_steps():
     """A plane beside the surface, and a front that has not reached it, change nothing."""
     surface = sphere()
@@ -192,6 +228,8 @@ def test_refusals():
     plane = BladePlane.of(Blade([0.5, 0.5, 0.5], [0, 1, 0], [0, 0, 1]))
     with pytest.raises(TypeError, match="surface must be a Surface, got Cage"):
         SurfaceCut(box(), plane, 6)
+    with pytest.raises(ValueError, match="the surface is of dimension 2 and the cut's plane of dimension 3"):
+        SurfaceCut(disk(), plane, 6)
     cut = SurfaceCut(sphere(), plane, 6)
     cut.advance(0.1)
     with pytest.raises(ValueError, match="never goes back: it has reached 0.1, asked for 0"):

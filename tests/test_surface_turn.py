@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import newton
 import numpy as np
 import pytest
@@ -11,67 +13,75 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import newton_cagecut as cagecut
-from cage_shapes import box
+from cage_shapes import box, random_blade
 from newton_cagecut.cage import Blade, Cut
 from newton_cagecut.surface import Surface, SurfaceCut
-from surface_shapes import SURFACES, check_closed, icosphere, sphere
+from surface_shapes import (
+    EVERY,
+    around,
+    check_closed,
+    check_sides,
+    check_surface,
+    grid,
+    gridded_box,
+    icosphere,
+    sphere,
+)
 
 RANDOM = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 
 
-def _blade(rng: np.random.Generator) -> Blade:
-    return Blade(rng.uniform(0.3, 0.7, 3), rng.normal(size=3), rng.normal(size=3))
-
-
-def _follow(cut: Cut, surface_cut: SurfaceCut, to: float, volume: float) -> Surface:
+def _follow(cut: Cut, surface_cut: SurfaceCut, to: float, volume: float, *, tolerance: float = 1e-12) -> Surface:
     """Advance both and check the surface."""
     edit = cut.advance(to=to)
     before = surface_cut.surface
     surface = surface_cut.advance(edit.front).surface if not edit.is_empty else before
-    check_closed(surface, volume)
+    check_surface(surface, volume)
+    base = surface_cut.base
+    np.testing.assert_array_equal(surface.point_key[: base.point_count], base.point_key)
+    if surface.dimension == 2:
+        check_sides(surface, cut.plane, cut.wall, tolerance=tolerance)
+        return surface
     for side, sign in ((0, 1.0), (1, -1.0)):
         cap = surface.triangle_key == 2 * cut.wall + side
         facing = sign * surface.mesh.face_area_vector[cap] @ cut.plane.normal
         assert facing.min(initial=0.0) > -1e-12
-        assert (
-            np.abs(cut.plane.distance(surface.points[surface.triangles[cap]].reshape(-1, 3))).max(initial=0.0) < 1e-12
-        )
+        height = cut.plane.distance(surface.points[surface.triangles[cap]].reshape(-1, 3))
+        assert np.abs(height).max(initial=0.0) < tolerance
         if side == 0:
             area = facing.sum()
     assert facing.sum() == pytest.approx(area, rel=1e-9)
-    base = surface_cut.base
-    np.testing.assert_array_equal(surface.point_key[: base.point_count], base.point_key)
     return surface
 
 
-@pytest.mark.parametrize("name", SURFACES)
+@pytest.mark.parametrize("name", EVERY)
 @settings(max_examples=5, **RANDOM)
 @given(st.integers(0, 2**32 - 1))
 def test_random_turns(name, seed):
-    """A cut with random turns leaves a closed surface of the same volume, with caps on every strip's plane."""
+    """A cut with random turns leaves a surface whole and as large, with its sides on every strip's plane."""
     rng = np.random.default_rng(seed)
-    surface = SURFACES[name]()
-    volume = surface.volume
-    cut = Cut(box(), _blade(rng))
+    surface = EVERY[name]()
+    cage, volume = around(surface), surface.volume
+    cut = Cut(cage, random_blade(rng, cage, 0.3))
     surface_cut = SurfaceCut(surface, cut.plane, cut.wall)
     _follow(cut, surface_cut, rng.uniform(0.2, 0.6) * cut.length, volume)
     for _ in range(4):
-        across, angle = np.cross(cut.plane.normal, cut.plane.edge), rng.uniform(-1.4, 1.4)
+        across, angle = cut.plane.across, rng.uniform(-1.4, 1.4)
         cut.turn(np.cos(angle) * across + np.sin(angle) * cut.plane.normal)
         surface_cut.go_on(cut.plane, cut.wall)
         for _ in range(2):
             _follow(cut, surface_cut, cut.depth + rng.uniform(0.05, 0.5) * (cut.length - cut.depth), volume)
 
 
-@pytest.mark.parametrize("name", SURFACES)
+@pytest.mark.parametrize("name", EVERY)
 @settings(max_examples=5, **RANDOM)
 @given(st.integers(0, 2**32 - 1))
 def test_side_by_side(name, seed):
-    """Two cuts that advance in turn leave a closed surface of the same volume."""
+    """Two cuts that advance in turn leave a surface whole and as large, in two pieces at least."""
     rng = np.random.default_rng(seed)
-    surface, cage = SURFACES[name](), box()
-    volume = surface.volume
-    cuts = [Cut(cage, _blade(rng)) for _ in range(2)]
+    surface = EVERY[name]()
+    cage, volume = around(surface), surface.volume
+    cuts = [Cut(cage, random_blade(rng, cage, 0.3)) for _ in range(2)]
     follow = [SurfaceCut(surface, cut.plane, cut.wall) for cut in cuts]
     for part in (0.3, 0.5, 0.7, 1.05):
         for cut, surface_cut in zip(cuts, follow, strict=True):
@@ -81,6 +91,29 @@ def test_side_by_side(name, seed):
             surface = _follow(cut, surface_cut, max(cut.depth, part * cut.length), volume)
             cage = cut.cage
     assert surface.mesh.component_count >= 2
+
+
+@pytest.mark.parametrize("make", [grid, gridded_box])
+@pytest.mark.parametrize("start", [[1.0, 0.0], [1.0, 1.0], [-1.0, 1.0]])
+def test_turns_on_a_regular_mesh(make, start):
+    """Cuts along edges of a regular mesh stop and turn at its points, on its edges and just where they leave it."""
+    surface = make()
+    cage, side = around(surface), 0.8 / (6 if surface.dimension == 2 else 4)
+    edges = np.eye(3)[2 : surface.dimension]
+
+    def vector(values):
+        return np.pad(values, (0, surface.dimension - 2))
+
+    directions = [vector(v) for v in ([1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [-1.0, 1.0], [0.3, 1.0], [0.0, -1.0])]
+    for depth, first, step in itertools.product((0.1 + side, 0.1 + 1.5 * side), directions, (side, 0.5 * side)):
+        cut = Cut(cage, Blade(vector([0.1 + side, 0.1 + side]), *edges, vector(start)))
+        surface_cut = SurfaceCut(surface, cut.plane, cut.wall)
+        _follow(cut, surface_cut, depth * np.hypot(*start), surface.volume)
+        for direction in (first, first[[1, 0, *range(2, surface.dimension)]] * [1.0, -1.0, 1.0][: surface.dimension]):
+            if direction @ cut.plane.across > -0.98 * np.linalg.norm(direction):
+                cut.turn(direction)
+                surface_cut.go_on(cut.plane, cut.wall)
+                _follow(cut, surface_cut, cut.depth + step, surface.volume, tolerance=2e-10)
 
 
 def test_open_surface_goes_on_without_caps():

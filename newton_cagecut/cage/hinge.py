@@ -16,6 +16,7 @@ from .blade import BladePlane
 from .polygon_mesh import PolygonMesh
 
 _STRAIGHT = 1e-9
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,8 +59,7 @@ def corner_ahead(mesh: PolygonMesh, corners: list[int], plane: BladePlane) -> in
         here = mesh.vertices[mesh.face_vertex[corner]]
         normal = mesh.face_area_vector[mesh.face[corner]]
         normal = normal / np.linalg.norm(normal)
-        ahead = np.cross(plane.normal, normal)
-        ahead *= np.sign(ahead @ np.cross(plane.normal, plane.edge))
+        ahead = _ahead_in(plane, normal)
         out = mesh.vertices[mesh.destination[corner]] - here
         back = mesh.vertices[mesh.face_vertex[_previous(mesh, corner)]] - here
         turn, whole = _angle(out, ahead, normal), _angle(out, back, normal)
@@ -68,6 +68,65 @@ def corner_ahead(mesh: PolygonMesh, corners: list[int], plane: BladePlane) -> in
         if min(excess, 2.0 * np.pi - turn) < least:
             best, least = corner, min(excess, 2.0 * np.pi - turn)
     return best
+
+
+def crosses_ahead(
+    mesh: PolygonMesh, plane: BladePlane, on_hinge: np.ndarray, half_edge: np.ndarray, points: np.ndarray
+) -> np.ndarray:
+    """Whether half-edges cross the plane ahead of the hinge, the same for twins, shape (count,).
+
+    Where a crossing is as near to the hinge's line as rounding, as edges of a regular mesh on which the front lies are,
+    its face tells: the plane leaves the face of a hinge's vertex ahead if it goes outward, and passes another face as a
+    whole ahead or behind.
+
+    Args:
+        mesh: The polygons.
+        plane: The plane, with the hinge at ``s = 0``.
+        on_hinge: Whether each vertex is the hinge's, shape (vertex_count,).
+        half_edge: Half-edges that cross the plane, without ends on the hinge, shape (count,).
+        points: Where they do, shape (count, 3) [m].
+    """
+    s = plane.coordinates(points)[:, 1]
+    ahead = s > 0.0
+    close = np.flatnonzero(np.abs(s) <= _ROUNDING * np.ptp(mesh.vertices, axis=0).max())
+    if not len(close):
+        return ahead
+    has_hinge = np.logical_or.reduceat(on_hinge[mesh.face_vertex], mesh.face_start[:-1])
+    place, open_ones = {h: i for i, h in enumerate(half_edge.tolist())}, set(half_edge[close].tolist())
+    of_face: dict[int, list[int]] = {}
+    for h in half_edge[np.isin(mesh.face[half_edge], mesh.face[half_edge[close]])].tolist():
+        of_face.setdefault(int(mesh.face[h]), []).append(h)
+    while open_ones:
+        told = {}
+        for h in sorted(open_ones):
+            face = int(mesh.face[h])
+            others = [other for other in of_face[face] if other != h]
+            if has_hinge[face]:
+                told[h] = _leaves_through(mesh, plane, h)
+            elif len(others) == 1 and others[0] not in open_ones:
+                told[h] = ahead[place[others[0]]]
+        if not told:
+            break
+        for h, value in told.items():
+            for one in (h, int(mesh.twin[h])):
+                if one in open_ones:
+                    ahead[place[one]] = value
+                    open_ones.discard(one)
+    return ahead
+
+
+def _leaves_through(mesh: PolygonMesh, plane: BladePlane, half_edge: int) -> bool:
+    """Whether the plane, as it goes ahead, leaves the half-edge's face through it."""
+    sides = [half_edge] if mesh.twin[half_edge] < 0 else [half_edge, int(mesh.twin[half_edge])]
+    normal = max(mesh.face_area_vector[mesh.face[sides]], key=np.linalg.norm)
+    along = mesh.vertices[mesh.destination[half_edge]] - mesh.vertices[mesh.face_vertex[half_edge]]
+    return bool(np.cross(along, normal) @ _ahead_in(plane, normal) > 0.0)
+
+
+def _ahead_in(plane: BladePlane, normal: np.ndarray) -> np.ndarray:
+    """Direction in which the plane goes ahead within a face of some normal."""
+    ahead = np.cross(plane.normal, normal)
+    return ahead * np.sign(ahead @ plane.across)
 
 
 def _angle(one: np.ndarray, other: np.ndarray, normal: np.ndarray) -> float:

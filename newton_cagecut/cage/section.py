@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from .blade import BladePlane
-from .hinge import Hinge, corner_ahead, corners_to_part
+from .hinge import Hinge, corner_ahead, corners_to_part, crosses_ahead
 from .pairing import alternate
 from .polygon_mesh import PolygonMesh
 
@@ -35,6 +35,7 @@ class Section:
         *,
         face_group: np.ndarray | None = None,
         hinge: Hinge | None = None,
+        tolerance: float = 0.0,
     ):
         """Cut a mesh's edges with a plane.
 
@@ -43,11 +44,13 @@ class Section:
             plane: The plane.
             face_group: Number of the solid that each face bounds, where solids may overlap, shape (face_count,).
             hinge: Front of an earlier cut from which this one goes on, at ``s = 0``.
+            tolerance: Distance up to which vertices count as on the plane [m].
         """
         self.mesh = mesh
         self.plane = plane
         self._face_group = face_group
         distance = plane.distance(mesh.vertices)
+        distance[np.abs(distance) <= tolerance] = 0.0
         positive = distance >= 0.0
         starts_positive = positive[mesh.face_vertex]
         crosses = starts_positive != starts_positive[mesh.next]
@@ -57,7 +60,8 @@ class Section:
             crosses &= ~(on_hinge[mesh.face_vertex] | on_hinge[mesh.destination])
         half_edge = np.flatnonzero(crosses)
         if hinge is not None:
-            half_edge = half_edge[plane.coordinates(_crossings(mesh, distance, half_edge))[:, 1] > 0.0]
+            points = _crossings(mesh, distance, half_edge)
+            half_edge = half_edge[crosses_ahead(mesh, plane, on_hinge, half_edge, points)]
         self.arrive = half_edge
         """Crossed half-edges, ascending, and then those that arrive at the hinge, shape (crossing_count,)."""
         self.leave = mesh.next[half_edge]
@@ -342,3 +346,18 @@ def _crossings(mesh: PolygonMesh, distance: np.ndarray, half_edge: np.ndarray) -
     above, below = np.where(down, start, end), np.where(down, end, start)
     t = distance[above] / (distance[above] - distance[below])
     return mesh.vertices[above] + t[:, None] * (mesh.vertices[below] - mesh.vertices[above])
+
+
+def clear_front(nodes: np.ndarray, front: float, tolerance: float) -> float:
+    """The front moved on, by as little as can be, so that no node is within the tolerance of it.
+
+    Args:
+        nodes: Coordinates s of the nodes, ascending [m].
+        front: Coordinate s of the front [m].
+        tolerance: Distance to keep [m].
+    """
+    while True:
+        last = int(np.searchsorted(nodes, front + tolerance)) - 1
+        if last < 0 or nodes[last] <= front - tolerance or nodes[last] + tolerance <= front:
+            return front
+        front = float(nodes[last]) + tolerance

@@ -22,7 +22,7 @@ from .numbering import Numbering
 from .opening import Opening
 from .polygon_mesh import PolygonMesh
 from .region import Region
-from .section import Section
+from .section import Section, clear_front
 from .triangulate import triangulate
 from .wall import Wall
 from .window import ClippedSection
@@ -105,12 +105,7 @@ class Strip:
             return 0.0
         if depth <= 0.0:
             return self.first - tolerance
-        front = min(self.first + depth, float(nodes[-1]) + tolerance)
-        while True:
-            last = int(np.searchsorted(nodes, front + tolerance)) - 1
-            if last < 0 or nodes[last] <= front - tolerance or nodes[last] + tolerance <= front:
-                return front
-            front = float(nodes[last]) + tolerance
+        return clear_front(nodes, min(self.first + depth, float(nodes[-1]) + tolerance), tolerance)
 
     def advance(self, state: StripState, to: float, depth: float) -> tuple[StripState, CageEdit]:
         """Open the strip further.

@@ -9,7 +9,7 @@ is cut as the open mesh in space that it is, by the plane that stands on the bla
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,13 +17,27 @@ from ..cage import BladePlane
 from ..cage.hinge import Hinge
 from ..cage.numbering import Numbering
 from ..cage.opening import Opening
-from ..cage.section import Section
+from ..cage.section import Section, clear_front
 from ..cage.window import ClippedSection
 from .split import cap_triangles, split_triangles
 from .surface import Surface
 
 _ON_FRONT = 1e-10
-_STATE = ("base", "surface", "plane", "wall", "front", "_section", "_numbering", "_tips", "_tip_wall")
+_ROUNDING = 1e-13
+_STATE = (
+    "base",
+    "surface",
+    "plane",
+    "wall",
+    "front",
+    "_reach",
+    "_offset",
+    "_offset_ahead",
+    "_section",
+    "_numbering",
+    "_tips",
+    "_tip_wall",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,9 +105,15 @@ class SurfaceCut:
         *,
         hinge: Hinge | None = None,
         window: tuple[float, float, float] | None = None,
+        offset: np.ndarray | None = None,
     ) -> None:
         plane = plane.in_space()
-        section = Section(surface.mesh, plane, face_group=surface.triangle_solid, hinge=hinge)
+        self._offset = np.zeros(3) if offset is None else offset
+        self._offset_ahead = float(plane.coordinates((plane.origin + self._offset)[None])[0, 1])
+        plane = replace(plane, origin=plane.origin + self._offset)
+        size = np.ptp(surface.points, axis=0).max()
+        rounding = {"tolerance": _ROUNDING * size}
+        section = Section(surface.mesh, plane, face_group=surface.triangle_solid, hinge=hinge, **rounding)
         if window is not None:
             section = ClippedSection(section, *window, tolerance=0.0)
         self.base = surface
@@ -106,6 +126,8 @@ class SurfaceCut:
         """Number of the wall on which new points lie."""
         self.front = -np.inf
         """Coordinate s of the blade in the plane [m]."""
+        self._reach = -np.inf
+        self._tolerance = _ON_FRONT * size
         self._section = section
         self._numbering = Numbering(section)
         self._tips = np.zeros(0, dtype=np.int64) if hinge is None else hinge.vertices
@@ -143,10 +165,13 @@ class SurfaceCut:
         shared &= np.isin(np.arange(surface.point_count), surface.triangles[key == 2 * front_wall + 1])
         candidates = np.flatnonzero(shared)
         s = self.plane.coordinates(surface.mesh.vertices[candidates])[:, 1]
-        limit = _ON_FRONT * np.ptp(surface.points, axis=0).max()
-        on_front[candidates[np.abs(s - self.front) <= limit]] = True
-        self._begin(surface, plane, wall, hinge=Hinge.of(surface.mesh, key, front_wall, on_front))
-        self.front, self._tip_wall = 0.0, front_wall
+        on_front[candidates[np.abs(s - self._reach) <= self._tolerance]] = True
+        offset = self._offset
+        if np.isfinite(self.front):
+            offset = offset + (self._reach - self.front) * self.plane.direction
+        self._begin(surface, plane, wall, hinge=Hinge.of(surface.mesh, key, front_wall, on_front), offset=offset)
+        self.front = self._reach = 0.0
+        self._tip_wall = front_wall
 
     def advance(self, front: float) -> SurfaceEdit:
         """Open the surface up to the front.
@@ -165,9 +190,13 @@ class SurfaceCut:
             raise ValueError("the front of a cut must be a number, got nan")
         if front < self.front:
             raise ValueError(f"a cut never goes back: it has reached {self.front:g}, asked for {front:g}")
+        if front > self.front:
+            # Tips keep off points and edges of the mesh, so that it is plain in which triangle each of them lies.
+            nodes = np.sort(self._section.node_coordinates[:, 1])
+            self._reach = max(self._reach, clear_front(nodes, front - self._offset_ahead, self._tolerance))
         self.front = front
         before = self.surface
-        opening = Opening(self._section, self._numbering, front)
+        opening = Opening(self._section, self._numbering, self._reach)
         if opening.created_count:
             self._tips, self._tip_wall = self._numbering.tip[opening.tip_chords], self.wall
             self.surface = self._open_surface(opening)
@@ -227,7 +256,7 @@ class SurfaceCut:
         at_nodes = section.node_values(values)
         low, high = section.chord_ends[chords].T
         s = section.node_coordinates[:, 1]
-        t = ((self.front - s[low]) / (s[high] - s[low]))[:, None]
+        t = ((self._reach - s[low]) / (s[high] - s[low]))[:, None]
         at_tips = at_nodes[low] + t * (at_nodes[high] - at_nodes[low])
         return np.concatenate([values, opening.created_values(at_nodes, at_tips)])
 

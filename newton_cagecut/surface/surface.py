@@ -207,7 +207,10 @@ class Surface:
         return _unit(-_unit(sums).sum(axis=1))
 
     def _directions_from_border(self, points: np.ndarray) -> np.ndarray:
-        """The same for a flat mesh: minus the sum of the normals of the border's two edges at each point."""
+        """The same for a flat mesh: minus the sum of the normals of the border's two edges at each point.
+
+        At the tip of a cut, where both edges are the two sides of it, they cancel.
+        """
         mesh = self.mesh
         border = mesh.twin < 0
         start, end = mesh.face_vertex[border], mesh.destination[border]
@@ -215,6 +218,7 @@ class Surface:
         sums = np.zeros((self.point_count, 2))
         for ends in (start, end):
             np.add.at(sums, ends, outward)
+        sums[np.linalg.norm(sums, axis=1) <= _CANCELLED] = 0.0
         return _unit(-sums[points])
 
     @cached_property
