@@ -12,6 +12,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import lstsq
 
+from newton_cagecut.cage import Cage
+from plane_shapes import loops_of
+
 _POLES = 24
 """Poles a corner."""
 _DEGREE = 20
@@ -124,3 +127,11 @@ class PlaneReference:
 def _real_and_imaginary(functions: np.ndarray) -> np.ndarray:
     """Real functions whose combinations are the real parts of those of complex ones; the first is constant."""
     return np.concatenate([functions.real, functions.imag[:, 1:]], axis=1)
+
+
+def plane_reference(cage: Cage, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Harmonic coordinates of a plane cage of one loop, and their gradients, shapes (n, v) and (n, v, 2)."""
+    (loop,) = loops_of(cage)
+    reference = PlaneReference(cage.vertices[loop])
+    order = np.argsort(loop)
+    return reference.weights(points)[:, order], reference.gradients(points)[:, order]

@@ -9,7 +9,7 @@ from ``plane_reference``, or mean value coordinates (paper, equation 4).
 
 from __future__ import annotations
 
-from itertools import permutations
+from itertools import pairwise, permutations
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -19,6 +19,28 @@ from skfem.models.poisson import laplace
 from harmonic_shapes import mean_value
 from newton_cagecut.cage import Cage, Cut
 from plane_reference import PlaneReference
+
+
+def crowded(stops: list[float], crowds: list[float], count: int) -> np.ndarray:
+    """Coordinates from stop to stop, some of which they crowd towards as the square of the distance.
+
+    Args:
+        stops: First, last and those in between, ascending.
+        crowds: The stops where they are to be dense.
+        count: Intervals from one stop to the next, even.
+    """
+    share = np.linspace(0.0, 1.0, count + 1)
+    parts = [stops[:1]]
+    for low, high in pairwise(stops):
+        steps = share
+        if low in crowds:
+            steps = (
+                np.where(share < 0.5, 2.0 * share**2, 1.0 - 2.0 * (1.0 - share) ** 2) if high in crowds else share**2
+            )
+        elif high in crowds:
+            steps = 1.0 - (1.0 - share) ** 2
+        parts.append(low + (high - low) * steps[1:])
+    return np.concatenate(parts)
 
 
 class SolidReference:

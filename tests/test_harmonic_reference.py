@@ -1,163 +1,148 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""Weights against references that share nothing with the walks, before and after cuts, in both dimensions.
-
-A mean over N independent runs is compared with the reference: the deviation of each weight stays within a few of its
-standard errors, which the runs themselves tell, plus the reference's own error.
-"""
+"""Cut cages against references that share nothing with the walks: rational functions and finite elements."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from cage_shapes import box, prism
-from harmonic_shapes import interior_points
-from newton_cagecut.cage import Blade, Cage, Cut
+from cage_shapes import box, prism, voxels
+from harmonic_shapes import (
+    MAKERS,
+    assert_unbiased,
+    assert_within_errors,
+    copies,
+    interior_points,
+    side_vertices,
+)
+from newton_cagecut.cage import Blade, Cage, Cut, boundary_distances
 from newton_cagecut.harmonic import HarmonicCoordinates
-from plane_reference import PlaneReference
-from plane_shapes import PLANES, outline, ring, square
-from solid_reference import SolidReference
+from plane_reference import PlaneReference, plane_reference
+from plane_shapes import loops_of, square
+from solid_reference import SolidReference, crowded
 
-RUNS = 16
-WALKS = 4096  # so many that what control variates leave of a bias, which falls as 1 / N, is below the noise
-SLIT = {
-    (0.0, 0.0): 0.3133712067,
-    (1.0, 0.0): 0.0633712067,
-    (1.0, 1.0): 0.0108204283,
-    (0.0, 1.0): 0.2608204283,
-    (0.5, 0.5): 0.2465151734,
-}
-"""Unit square with the slit x = 0.5, y > 0.5, at (0.25, 0.5): corners and tip (spectral, residual 5e-14)."""
-MOUTHS = (0.0063362780, 0.0987652787)
-"""The slit's mouth on the right, and on the left."""
+PUBLISHED = [0.3133712067, 0.0633712067, 0.0108204283, 0.0063362780, 0.2465151734, 0.0987652787, 0.2608204283]
+"""Weights of (0.25, 0.5) in the unit square slit from the middle of its top to its centre, counterclockwise from the
+origin: by a spectral method with a residual of 5e-14."""
 
 
-def runs_of(cage: Cage, points: np.ndarray, walks: int, runs: int = RUNS, **options) -> np.ndarray:
-    """Weights of independent runs, shape (run_count, point_count, vertex_count)."""
-    repeated = np.tile(points, (runs, 1))  # the walks of equal points at other places of the list are others
-    weights = HarmonicCoordinates(cage, repeated, walks, seed=5, cuttable=False, **options).weights
-    return weights.astype(np.float64).reshape(runs, len(points), -1)
+def slit_square() -> tuple[Cage, list[int]]:
+    """The unit square slit from the middle of its top to its centre, and its loop from the origin."""
+    cage = Cut(square(), Blade([0.5, 0.5], [0.0, -1.0])).advance(to=0.5).cage
+    return cage, loops_of(cage)[0]
 
 
-def assert_agrees(
-    runs: np.ndarray, exact: np.ndarray, *, own_error: float = 0.0, which: np.ndarray | None = None
-) -> None:
-    """Assert that the mean of the runs is the reference, to 3 standard errors and a reference's own error.
+def points_inside(cage: Cage, count: int, seed: int) -> np.ndarray:
+    """Points at some distance from the boundary."""
+    points = interior_points(cage, 20 * count, np.random.default_rng(seed))
+    return points[boundary_distances(cage, points) > 0.05 * cage.diameter][:count]
 
-    Of many weights a few may lie farther off; their scores are asserted to have the spread of Student's t. A weight
-    that few walks reach is left out: its spread over the runs says nothing of its error.
-    """
-    which = exact > 0.01 if which is None else which
-    assert which.sum() > 8
-    error = (runs.mean(axis=0) - exact)[which]
-    standard = (runs.std(axis=0, ddof=1) / np.sqrt(len(runs)))[which]
-    allowed = 3.0 * standard + own_error + 1e-6
-    assert (np.abs(error) > allowed).mean() < 0.05
-    assert (np.abs(error) < 2.0 * allowed).all()
-    resolved = standard > max(1e-6, own_error)
-    if resolved.sum() > 40:
-        assert 0.7 < np.sqrt(np.mean((error / standard)[resolved] ** 2)) < 1.5
+
+def extruded(weights: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Coordinates in a prism of those of its polygon and the share of the height: first of the bottom, then the top."""
+    return np.concatenate([weights * (1.0 - share[:, None]), weights * share[:, None]], axis=1)
+
+
+def test_plane_reference_is_the_published_one():
+    """Rational functions give the published weights of a slit square, and know how good they are."""
+    cage, loop = slit_square()
+    reference = PlaneReference(cage.vertices[loop])
+    assert reference.error < 1e-8
+    np.testing.assert_allclose(reference.weights(np.array([[0.25, 0.5]])), [PUBLISHED], atol=2e-10)
+    points = points_inside(cage, 50, 0)
+    np.testing.assert_allclose(reference.weights(points) @ cage.vertices[loop], points, atol=1e-9)
 
 
 @pytest.mark.parametrize("correction", ["harmonic", "none"])
 def test_slit_square(correction):
-    """All seven weights of a slit square agree with their spectral values, at 2^16 walks."""
-    cut = Cut(square(), Blade((0.5, 2.0), (0.0, -1.0)))
+    """All seven weights of 2^16 walks lie within three standard errors of the published ones, on both sides alike.
+
+    The standard error is that of 64 independent estimates of 1024 walks each, over the root of 64.
+    """
+    cage, loop = slit_square()
+    points = np.array([[0.25, 0.5], [0.75, 0.5]])
+    mirrored = np.array(PUBLISHED)[[1, 0, 6, 5, 4, 3, 2]]
+    error = copies(cage, points, 1 << 10, 64, seed=1, correction=correction)[0].std(axis=0, ddof=1) / 8.0
+    weights = HarmonicCoordinates(cage, points, 1 << 16, correction=correction, cuttable=False).weights
+    off = np.abs(weights[:, loop] - [PUBLISHED, mirrored])
+    assert (off <= 3.0 * error[:, loop]).all()
+    assert off.max() < 0.005
+
+
+@pytest.mark.parametrize("name", ["l_shape", "star"])
+def test_prism_is_polygon_times_height(name):
+    """In a right prism with harmonic quads weights are those of its polygon times a linear share of the height."""
+    plane = MAKERS[name]()
+    cage = prism(plane.vertices, 0.8)
+    points = points_inside(cage, 8, 1)
+    exact = extruded(plane_reference(plane, points[:, :2])[0], points[:, 2] / 0.8)
+    assert_unbiased(copies(cage, points, 1024, 32, quads="harmonic", correction="none")[0], exact)
+    assert_within_errors(copies(cage, points, 4096, 16, quads="harmonic")[0], exact)
+
+
+def test_box_cut_part_of_the_way():
+    """A box slit along its height is a prism over a slit square: known exactly, part-way cut and all."""
+    cut = Cut(box(), Blade([0.5, 0.5, 0.5], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]))
     cage = cut.advance(to=0.5).cage
-    exact = np.array([SLIT.get(tuple(np.round(vertex, 6)), np.nan) for vertex in cage.vertices])
-    mouths = np.flatnonzero(np.isnan(exact))
-    right = cage.face_component  # one loop: the sides are told apart by the faces at the mouths
-    assert right.max() == 0
-    for mouth in mouths:
-        faces = [face for face in cage.faces if mouth in face]
-        beside = [v for face in faces for v in face if v != mouth and np.isnan(exact[v]) == 0]
-        corner = max(cage.vertices[beside], key=lambda place: abs(place[0] - 0.5))
-        exact[mouth] = MOUTHS[0] if corner[0] > 0.5 else MOUTHS[1]
-    assert exact.sum() == pytest.approx(1.0, abs=1e-8)
-    runs = runs_of(cage, np.array([[0.25, 0.5]]), (1 << 16) // RUNS, correction=correction)
-    standard = runs.std(axis=0, ddof=1) / np.sqrt(RUNS)
-    assert (np.abs(runs.mean(axis=0) - exact) < 3.0 * standard).all()
+    plane, loop = slit_square()
+    points = points_inside(cage, 10, 2)
+    points = points[np.abs(points[:, 0] - 0.5) > 0.03]
+    exact = np.zeros((len(points), cage.vertex_count))
+    exact[:, _prism_order(cut, plane.vertices[loop])] = extruded(
+        PlaneReference(plane.vertices[loop]).weights(points[:, :2]), points[:, 2]
+    )
+    assert_unbiased(copies(cage, points, 1024, 32, quads="harmonic", correction="none")[0], exact)
+    assert_within_errors(copies(cage, points, 4096, 16, quads="harmonic")[0], exact)
 
 
-def test_triangle_is_barycentric():
-    """In a triangle the weights and gradients are the barycentric ones, to rounding."""
-    cage = outline([[0.0, 0.0], [1.0, 0.1], [0.3, 0.8]])
-    points = interior_points(cage, 40, np.random.default_rng(1))
-    coordinates = HarmonicCoordinates(cage, points, 64, gradients=True)
-    inverse = np.linalg.inv(np.c_[cage.vertices, np.ones(3)])
-    np.testing.assert_allclose(coordinates.weights, np.c_[points, np.ones(40)] @ inverse, atol=2e-6)
-    np.testing.assert_allclose(coordinates.gradients, np.broadcast_to(inverse[:2].T, (40, 3, 2)), atol=1e-4)
+def _prism_order(cut: Cut, corners: np.ndarray) -> np.ndarray:
+    """Vertices of a cut box over the corners of its slit square, first of the bottom, then of the top."""
+    cage, order = cut.cage, []
+    left = int(cut.plane.normal[0] < 0.0)  # side 1 faces the body where the normal points
+    for height in (0.0, 1.0):
+        for i, corner in enumerate(corners):
+            found = np.flatnonzero(np.abs(cage.vertices - [*corner, height]).max(axis=1) < 1e-9)
+            if len(found) > 1:  # the right mouth comes before the tip, the left one after it
+                found = np.intersect1d(found, side_vertices(cage, cut.wall, left if i == 5 else 1 - left))
+            order.extend(found)
+    return np.array(order)
 
 
-@pytest.mark.parametrize("name", ["l_shape", "star", "square"])
-def test_polygons(name):
-    """Weights and gradients in polygons agree with rational functions that solve the same problem."""
-    cage = PLANES[name]()
-    reference = PlaneReference(cage.vertices)
-    points = interior_points(cage, 12, np.random.default_rng(2))
-    assert reference.error < 1e-4
-    exact = reference.weights(points)
-    assert_agrees(runs_of(cage, points, WALKS), exact, own_error=reference.error)
-    repeated = np.tile(points, (RUNS, 1))
-    slopes = HarmonicCoordinates(cage, repeated, WALKS, seed=6, gradients=True, cuttable=False).gradients
-    slopes = slopes.astype(np.float64).reshape(RUNS, 12, -1, 2)
-    assert_agrees(slopes, reference.gradients(points), own_error=10.0 * reference.error, which=exact > 0.01)
+@pytest.fixture(scope="module")
+def half_cut_l() -> tuple[Cut, np.ndarray, list[SolidReference]]:
+    """An L of three cubes, two of them cut half-way by a blade; points, and finite elements on two grids."""
+    cut = Cut(
+        voxels([(0, 0, 0), (1, 0, 0), (0, 1, 0)], np.ones(3)), Blade([0.5] * 3, [0.0, 1.0, 0.0], [0.0, 0.0, -1.0])
+    )
+    cut.advance(to=0.5)
 
+    def ticks(count: int) -> list[np.ndarray]:
+        """Planes of the grid, dense at the front, along y at z = 0.5, and at the inner edge, along z at y = 1."""
+        return [
+            crowded([0.0, 0.5, 1.0, 2.0], [0.5, 1.0], count),
+            crowded([0.0, 1.0, 2.0], [1.0], count),
+            crowded([0.0, 0.5, 1.0], [0.5], count),
+        ]
 
-def test_right_prism_is_a_product():
-    """In a right prism the weights are those of its polygon times linear ones in the height, with harmonic quads."""
-    polygon = ring(5)
-    cage = prism(polygon, 0.8)
-    points = interior_points(cage, 10, np.random.default_rng(3))
-    across, up = PlaneReference(polygon).weights(points[:, :2]), points[:, 2:] / 0.8
-    exact = np.concatenate([across * (1.0 - up), across * up], axis=1)
-    assert_agrees(runs_of(cage, points, 512, quads="harmonic"), exact)
-
-
-def test_rate_in_the_plane():
-    """The error of controls of one degree falls as the root of the number of walks."""
-    cage = PLANES["l_shape"]()
-    points = interior_points(cage, 24, np.random.default_rng(4))
-    exact = PlaneReference(cage.vertices).weights(points)
-    walks = [64, 512, 4096]
-    errors = [np.sqrt(np.mean((runs_of(cage, points, count, 4, degree=1) - exact) ** 2)) for count in walks]
-    assert -np.polyfit(np.log(walks), np.log(errors), 1)[0] == pytest.approx(0.5, abs=0.1)
-
-
-def test_bias_falls_with_epsilon():
-    """Landing 0.05 away from the walls is a bias that can be seen; landing 1e-4 away is none that can."""
-    cage = PLANES["star"]()
-    points = interior_points(cage, 12, np.random.default_rng(5))
-    exact = PlaneReference(cage.vertices).weights(points)
-    errors = [
-        np.sqrt(np.mean((runs_of(cage, points, 1024, epsilon=epsilon).mean(axis=0) - exact) ** 2))
-        for epsilon in (0.05, 1e-4)
-    ]
-    assert errors[0] > 2.0 * errors[1]
+    x, y, z = ticks(4)
+    nodes = [(2, 1, 6), (5, 1, 6), (3, 6, 5), (5, 6, 5), (4, 2, 2), (10, 1, 6), (5, 7, 7), (1, 7, 2)]
+    points = np.array([[x[i], y[j], z[k]] for i, j, k in nodes])
+    return cut, points, [SolidReference(cut, ticks(count), points) for count in (4, 8)]
 
 
 @pytest.mark.parametrize("quads", ["harmonic", "mean_value"])
-def test_part_way_cut_against_finite_elements(quads):
-    """A box cut half-way has the weights of quadratic finite elements, to 3 standard errors and the elements' error."""
-    cut = Cut(box(), Blade([0.5, 0.5, 2.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]))
-    cut.advance(to=0.5)
-    points = np.array([[x, y, z] for x in (0.25, 0.75) for y in (0.5,) for z in (0.25, 0.5, 0.75)])
-    coarse, fine = (
-        SolidReference(cut, [np.linspace(0.0, 1.0, count + 1)] * 3, points).weights(quads=quads) for count in (8, 12)
-    )
-    # The front's square root makes the elements converge as their width: what is left is twice the last change.
-    own_error = 2.0 * float(np.abs(fine - coarse).max())
-    assert own_error < 0.01
-    exact = fine + 2.0 * (fine - coarse)
-    assert_agrees(runs_of(cut.cage, points, 1024, quads=quads), exact, own_error=own_error)
+def test_finite_elements(half_cut_l, quads):
+    """Weights on both sides of a part-way cut, below its front and far off lie within three standard errors.
 
-
-def test_finite_elements_are_a_reference():
-    """On the uncut box the elements give trilinear weights: the test above fails for the right reasons."""
-    cage = box()
-    cut = Cut(cage, Blade([0.5, 0.5, 2.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]))
-    points = np.array([[0.25, 0.5, 0.75], [0.5, 0.25, 0.5]])
-    found = SolidReference(cut, [np.linspace(0.0, 1.0, 9)] * 3, points).weights(quads="harmonic")
-    factor = np.where(cage.vertices > 0.5, points[:, None], 1.0 - points[:, None])
-    np.testing.assert_allclose(found, factor.prod(axis=2), atol=1e-6)
+    The finite elements' own error is taken as a third of what halving the grid's intervals has changed.
+    """
+    cut, points, references = half_cut_l
+    coarse, fine = (reference.weights(quads=quads) for reference in references)
+    own_error = np.abs(fine - coarse) / 3.0
+    assert own_error.max() < 0.002
+    np.testing.assert_allclose(fine @ cut.cage.vertices, points, atol=1e-7)
+    assert_within_errors(copies(cut.cage, points, 8192, 16, quads=quads)[0], fine, own_error=own_error)
+    plain = copies(cut.cage, points, 1024, 64, quads=quads, correction="none")[0]
+    common = fine > 0.01  # others are met by too few walks for a standard error
+    assert_unbiased(plain[:, common], fine[common], own_error=own_error[common])
