@@ -111,7 +111,10 @@ def test_bent_cuts_side_by_side():
     """A cut that follows a bow while another crosses it: the body stays at rest, pieces come off, weights are exact."""
     _, solver, *states = make_solver(dimension=2)
     body, volume = solver.bodies[0], ball(2).volume
-    bow, other = solver.begin_cut(0, Blade([0.2, 0.0], [0.0, 1.0])), solver.begin_cut(0, Blade([1.0, 0.55], [-1.0, 0.1]))
+    bow, other = (
+        solver.begin_cut(0, Blade([0.2, 0.0], [0.0, 1.0])),
+        solver.begin_cut(0, Blade([1.0, 0.55], [-1.0, 0.1])),
+    )
     for angle in np.radians([75.0, 45.0, 15.0, -15.0, -45.0, -75.0, -90.0]):
         solver.advance_cut(bow, 0.13, states=states)
         bow.turn([np.cos(angle), np.sin(angle)])

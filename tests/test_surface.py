@@ -47,8 +47,20 @@ def test_solids():
 @pytest.mark.parametrize(
     ("points", "triangles", "options", "error", "match"),
     [
-        (np.zeros((4, 4)), [[0, 1, 2]], {}, ValueError, r"shape \(point_count, 3\), or \(point_count, 2\), got \(4, 4\)"),
-        ([[0, 0], [1, 0], [1, 1]], [[0, 1, 2], [0, 2, 1]], {}, ValueError, "triangle 1 of the flat surface is clockwise"),
+        (
+            np.zeros((4, 4)),
+            [[0, 1, 2]],
+            {},
+            ValueError,
+            r"shape \(point_count, 3\), or \(point_count, 2\), got \(4, 4\)",
+        ),
+        (
+            [[0, 0], [1, 0], [1, 1]],
+            [[0, 1, 2], [0, 2, 1]],
+            {},
+            ValueError,
+            "triangle 1 of the flat surface is clockwise",
+        ),
         ([[0, 0], [1, 0], [1, 1]], [[0, 1, 2]], {"normals": np.zeros((3, 3))}, ValueError, "has no normals of its own"),
         ("abc", [[0, 1, 2]], {}, TypeError, "points of the surface must be numbers"),
         (np.full((4, 3), np.nan), [[0, 1, 2]], {}, ValueError, "points of the surface: row 0 is not finite"),
