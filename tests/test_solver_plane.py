@@ -134,7 +134,7 @@ def test_bent_cuts_side_by_side():
 
 
 def test_start_between_parts_waits_for_other_cuts():
-    """A blade that starts outside goes on after another cut has changed the body before it opened, and cuts the same."""
+    """A blade that starts outside cuts the same after another cut has changed the body before it opened."""
     areas = []
     for crossed in (False, True):
         _, solver, *states = make_solver(dimension=2)

@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import newton_cagecut as cagecut
 from cage_shapes import SHAPES, box, random_blade
 from newton_cagecut.cage import Blade, Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
