@@ -34,9 +34,9 @@ ARMS = (
 )
 _ROOT = 0.215  # distance of the arms' roots from the axis [m]
 _LOW, _HIGH = -0.005, 0.165  # of the roots [m]
-_MARGIN = 0.022  # of the cage around an arm [m]
+_MARGIN = 0.025  # of the cage around an arm [m]
 # Rings of the mantle: its axis's place backward and up, its radius [m], its lean backward [rad]
-_MANTLE = ((0.0, 0.24, 0.19, 0.0), (0.03, 0.36, 0.225, 0.15), (0.09, 0.5, 0.24, 0.3), (0.15, 0.61, 0.19, 0.42))
+_MANTLE = ((0.0, 0.24, 0.2, 0.0), (0.03, 0.36, 0.225, 0.15), (0.09, 0.5, 0.24, 0.3), (0.15, 0.61, 0.19, 0.42))
 _MANTLE_END = (0.0, 0.19, 0.69)
 _EYES = ((0.08, -0.13, 0.3), (-0.08, -0.13, 0.3))
 _EYE_ENDS = ((0.12, -0.25, 0.3), (-0.12, -0.25, 0.3))  # of the cage over them
@@ -90,7 +90,13 @@ _TILT = np.array([[1, 0, 0], [0, np.cos(_LEAN), np.sin(_LEAN)], [0, -np.sin(_LEA
 def octopus_mesh() -> tuple[np.ndarray, np.ndarray]:
     """Return the points ``(2784, 3)`` [m] and the outward triangles ``(5564, 3)`` of the octopus."""
     return mesh_field(
-        octopus_field, (-0.9, -0.9, -0.05), (0.9, 0.9, 0.68), VERTEX_COUNT, seed=2, spacing=octopus_spacing
+        octopus_field,
+        (-0.9, -0.9, -0.05),
+        (0.9, 0.9, 0.68),
+        VERTEX_COUNT,
+        seed=2,
+        iterations=30,
+        spacing=octopus_spacing,
     )
 
 

@@ -4,7 +4,8 @@
 
 ``python -m benchmarks.locality`` cuts OCTOPUS at three places and counts, for each vertex of the mesh, the walks that
 the cut changes (figure 12); and it cuts STARFISH in three directions and compares the walks that each kind of bounding
-volume flags, in steps of 3 %, with those that really change (figure 13). A walk that meets a cut goes
+volume flags, in steps of 3 %, with those that really change (figure 13). A third table cuts a star in the plane and the
+prism on it alike (section 7: locality is "more pronounced in 3D"). A walk that meets a cut goes
 on from there with smaller spheres, so it lands elsewhere: a walk has changed where its landing has.
 """
 
@@ -21,12 +22,13 @@ from tqdm import tqdm
 
 from assets.starfish import ARM_ANGLES
 from benchmarks.progressive import Table, edits, parsed, parser_of, show, step_count
-from benchmarks.scenes import DOWN, SCENES, BenchmarkScene, across_octopus_arm
-from newton_cagecut import Blade, HarmonicCoordinates
+from benchmarks.scenes import DOWN, SCENES, across_octopus_arm
+from newton_cagecut import Blade, Cage, HarmonicCoordinates
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_UP = (0.0, 0.0, 1.0)
 BOUNDS = ("dop26", "dop18", "aabb", "sphere")
 SHARES = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0)  # edges of the histogram's bins
 _BINS = ["none", *(f"{100.0 * a:g} to {100.0 * b:g}" for a, b in zip(SHARES, SHARES[1:]))]
@@ -81,20 +83,21 @@ class Flagged:
         return sum(self.flagged) / sum(self.changed) - 1.0
 
 
-def follow(scene: BenchmarkScene, blade: Blade, walks: int, label: str, **options) -> Flagged:
-    """Cut a scene by one blade and count walks.
+def follow(cage: Cage, points: np.ndarray, blade: Blade, walks: int, label: str, **options) -> Flagged:
+    """Cut a cage by one blade and count walks.
 
     Args:
-        scene: The scene; its own cuts are not made.
+        cage: The cage.
+        points: Points in it [m], shape ``(n, dimension)``.
         blade: The blade.
         walks: Walks a point.
         label: What is being done, for the bar on standard error.
         options: Further options of the coordinates.
     """
-    coordinates = HarmonicCoordinates(scene.cage, scene.points, walks, **options)
+    coordinates = HarmonicCoordinates(cage, points, walks, **options)
     before = _landings(coordinates)
     found = Flagged([], [], np.zeros(len(before), dtype=bool))
-    for edit in tqdm(edits(scene.cage, [blade]), desc=label, total=step_count(), unit="step"):
+    for edit in tqdm(edits(cage, [blade]), desc=label, total=step_count(), unit="step"):
         found.flagged.append(coordinates.update(edit).rewalked / len(before))
         after = _landings(coordinates)
         changed = (before != after).any(axis=1)
@@ -105,28 +108,51 @@ def follow(scene: BenchmarkScene, blade: Blade, walks: int, label: str, **option
 
 
 def _landings(coordinates: HarmonicCoordinates) -> np.ndarray:
-    """Return where each walk landed, with the wall's side, as bits, shape ``(walk_count, 4)``."""
+    """Return where each walk landed, with the wall's side, as bits, shape ``(walk_count, n)``."""
     landings = coordinates.landings
     return np.column_stack([np.ascontiguousarray(landings["point"]).view(np.int32), landings["key"]])
 
 
 def place_shares(walks: int, **options) -> dict[str, np.ndarray]:
     """Return, for each place of a cut through OCTOPUS, the share of each vertex's walks that the cut changes."""
-    found = {place: follow(SCENES["octopus"], blade, walks, place, **options) for place, blade in PLACES.items()}
+    scene = SCENES["octopus"]
+    found = {place: follow(scene.cage, scene.points, blade, walks, place, **options) for place, blade in PLACES.items()}
     return {place: flagged.touched.reshape(-1, walks).mean(axis=1) for place, flagged in found.items()}
 
 
 def bounds_counts(walks: int, **options) -> dict[tuple[str, str], Flagged]:
     """Return, for each direction of a cut through STARFISH and kind of bounds, the walks flagged and changed."""
-    found = {}
+    found, scene = {}, SCENES["starfish"]
     for direction, blade in DIRECTIONS.items():
         for bounds in BOUNDS:
             try:
                 label = f"{direction}, {bounds}"
-                found[direction, bounds] = follow(SCENES["starfish"], blade, walks, label, bounds=bounds, **options)
+                found[direction, bounds] = follow(
+                    scene.cage, scene.points, blade, walks, label, bounds=bounds, **options
+                )
             except ValueError as error:
                 print(f"{bounds} left out: {error}")
     return found
+
+
+def dimension_counts(walks: int, **options) -> dict[str, Flagged]:
+    """Return the walks that a cut across an arm of a star changes, in the plane and in the prism on the star.
+
+    The points in the prism are those of the plane at half of its height, which is as wide as the arm is at the cut.
+    """
+    angle = np.pi / 5.0 * np.arange(10)
+    outline = np.where(np.arange(10) % 2 == 0, 1.0, 0.4)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    plane = Cage(outline, [(i, (i + 1) % 10) for i in range(10)])
+    points = np.random.default_rng(1).uniform(-1.0, 1.0, (4000, 2))
+    points, height = points[plane.contains(points)], 0.3
+    sides = [(i, (i + 1) % 10, 10 + (i + 1) % 10, 10 + i) for i in range(10)]
+    corners = np.concatenate([np.c_[outline, np.full(10, z)] for z in (0.0, height)])
+    prism = Cage(corners, [tuple(range(10))[::-1], tuple(range(10, 20)), *sides])
+    inside = np.c_[points, np.full(len(points), 0.5 * height)]
+    return {
+        "star in 2D": follow(plane, points, Blade((0.6, 1.0), (0.0, -1.0)), walks, "2D", **options),
+        "prism in 3D": follow(prism, inside, Blade((0.6, 1.0, 0.0), _UP, (0.0, -1.0, 0.0)), walks, "3D", **options),
+    }
 
 
 def histogram(share: np.ndarray) -> np.ndarray:
@@ -152,6 +178,15 @@ def bounds_table(found: dict[tuple[str, str], Flagged]) -> Table:
         rows.append([*key, *(f"{share:.2f}" for share in shares), f"{counts.in_vain:.2f}"])
     head = ["cut", "bounds", "flagged %", "changed %", "in vain for each changed"]
     return Table("STARFISH: walks flagged and changed, means over the steps of a cut", head, rows)
+
+
+def dimension_table(found: dict[str, Flagged]) -> Table:
+    """Return locality in both dimensions as a table."""
+    rows = [
+        [name, *(f"{100.0 * np.mean(share):.2f}" for share in (counts.flagged, counts.changed))]
+        for name, counts in found.items()
+    ]
+    return Table("A cut across an arm, means over its steps", ["body", "flagged %", "changed %"], rows)
 
 
 def plot(shares: dict[str, np.ndarray], found: dict[tuple[str, str], Flagged], path: Path) -> None:
@@ -193,7 +228,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parsed(parser, arguments)
     shares = place_shares(options.walks, device=options.device)
     found = bounds_counts(options.walks, device=options.device)
-    show([place_table(shares), bounds_table(found)], options.markdown)
+    dimensions = dimension_counts(options.walks, device=options.device)
+    show([place_table(shares), bounds_table(found), dimension_table(dimensions)], options.markdown)
     if options.plot:
         plot(shares, found, options.plot)
 

@@ -7,12 +7,19 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
+from cage_shapes import SHAPES
 from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from plane_shapes import PLANES
 
 wp.config.quiet = True
 
 DEVICES = [str(device) for device in wp.get_devices()]
+
+MAKERS = SHAPES | PLANES
+"""Cages of both dimensions."""
+UNITS = ("square", "box")
+"""The unit cube of each dimension."""
 
 
 def interior_points(cage: Cage, count: int, rng: np.random.Generator) -> np.ndarray:
@@ -26,11 +33,10 @@ def interior_points(cage: Cage, count: int, rng: np.random.Generator) -> np.ndar
 
 
 def points_near_faces(cage: Cage, distance: float, rng: np.random.Generator) -> np.ndarray:
-    """A point in front of every triangle of a cage, at a distance [m] inside, shape (triangle_count, 3)."""
-    corners = cage.vertices[cage.triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    share = rng.dirichlet((3.0, 3.0, 3.0), len(corners))
+    """A point in front of every simplex of a cage, at a distance [m] inside, shape (simplex_count, dimension)."""
+    corners = cage.vertices[cage.simplices]
+    normals = np.array([wall.normal for wall in cage.walls])[cage.face_wall[cage.simplex_face]]
+    share = rng.dirichlet(np.full(cage.dimension, 3.0), len(corners))
     return np.einsum("ti,tij->tj", share, corners) - distance * normals
 
 
@@ -50,7 +56,9 @@ def crossing_blade(rng: np.random.Generator, edits: list[CageEdit]) -> Blade:
 def middle_cut(cage: Cage) -> Cut:
     """A cut across x, from above, next to the middle of a cage."""
     low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
-    return Cut(cage, Blade(low + (high - low) * [0.47, 0.5, 0.5], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]))
+    middle = low + (high - low) * [0.47, 0.5, 0.5][: cage.dimension]
+    edge = [[0.0, 1.0, 0.0]] if cage.dimension == 3 else []
+    return Cut(cage, Blade(middle, *edge, -np.eye(cage.dimension)[-1]))
 
 
 def snapshot(coordinates: HarmonicCoordinates) -> dict[str, np.ndarray]:
@@ -87,14 +95,69 @@ def assert_reproduces(coordinates: HarmonicCoordinates, points: np.ndarray, *, g
         assert (np.abs(identity - np.eye(cage.dimension)).max(axis=(1, 2)) <= allowed).all()
 
 
-def trilinear(cage: Cage, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Exact harmonic coordinates of a box and their gradients [1/m], shapes (n, 8) and (n, 8, 3)."""
+def mean_value(corners: np.ndarray, point: np.ndarray) -> np.ndarray:
+    """Floater's mean value coordinates of a convex polygon from angles, shape (corner_count,)."""
+    offset = corners - point
+    length = np.linalg.norm(offset, axis=1)
+    if length.min() < 1e-12 * length.max():
+        return np.eye(len(corners))[length.argmin()]
+    after = np.roll(offset, -1, axis=0)
+    cosine = np.einsum("ij,ij->i", offset, after) / (length * np.roll(length, -1))
+    tangent = np.tan(np.arccos(np.clip(cosine, -1.0, 1.0)) / 2.0)
+    weight = (np.roll(tangent, 1) + tangent) / length
+    return weight / weight.sum()
+
+
+def multilinear(cage: Cage, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Exact harmonic coordinates of a box or a rectangle and their gradients [1/m], shapes (n, v) and (n, v, d)."""
     low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
     sign = np.where(cage.vertices > 0.5 * (low + high), 1.0, -1.0)
     factor = 0.5 + sign * ((points - 0.5 * (low + high)) / (high - low))[:, None]
     slope = sign / (high - low)
-    gradient = np.stack([slope[:, k] * np.delete(factor, k, axis=2).prod(axis=2) for k in range(3)], axis=2)
+    axes = range(cage.dimension)
+    gradient = np.stack([slope[:, k] * np.delete(factor, k, axis=2).prod(axis=2) for k in axes], axis=2)
     return factor.prod(axis=2), gradient
+
+
+def copies(cage: Cage, points: np.ndarray, walks: int, count: int, **options) -> tuple[np.ndarray, ...]:
+    """Independent weights, and gradients if asked for, copies x points x vertices: each point is there many times."""
+    coordinates = HarmonicCoordinates(cage, np.repeat(points, count, axis=0), walks, cuttable=False, **options)
+    return tuple(
+        values.astype(np.float64).reshape(len(points), count, *values.shape[1:]).swapaxes(0, 1)
+        for values in (coordinates.weights, coordinates.gradients)
+        if len(values)
+    )
+
+
+def assert_within_errors(estimates: np.ndarray, exact: np.ndarray, *, own_error: np.ndarray | float = 0.0) -> None:
+    """Assert that single estimates lie within three standard errors of the exact values, but for one in a hundred.
+
+    Args:
+        estimates: Independent estimates, whose spread is the standard error of each, shape (run_count, ...).
+        exact: What they are of, shape (...).
+        own_error: What may be wrong with the exact values, shape (...).
+    """
+    allowed = 3.0 * estimates.std(axis=0, ddof=1) + own_error + 1e-6
+    assert np.mean(np.abs(estimates - exact) > allowed) < 0.01
+
+
+def assert_unbiased(estimates: np.ndarray, exact: np.ndarray, *, own_error: np.ndarray | float = 0.0) -> None:
+    """Assert that independent estimates scatter about the exact values by their standard error and no more.
+
+    Args:
+        estimates: Estimates, shape (run_count, ...).
+        exact: What they are of, shape (...).
+        own_error: What may be wrong with the exact values, shape (...).
+    """
+    count = len(estimates)
+    spread = estimates.std(axis=0, ddof=1)
+    resolved = spread > 1e-6
+    assert resolved.mean() > 0.9
+    off = np.maximum(np.abs(estimates.mean(axis=0) - exact) - own_error, 0.0)[resolved]
+    score = off / (spread[resolved] / np.sqrt(count))
+    expected = np.sqrt((count - 1) / (count - 3))  # Student's t
+    assert 0.6 * expected < np.sqrt(np.mean(score**2)) < 1.35 * expected
+    assert np.mean(score > 3.0 * expected) < 0.02
 
 
 def side_vertices(cage: Cage, wall: int, side: int) -> np.ndarray:

@@ -2,23 +2,33 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import importlib
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from assets import bunny, gingerbread, starfish
-from newton_cagecut.cage import boundary_distances
+from assets import bunny, gingerbread
+from benchmarks.paper import TABLE_1
+from newton_cagecut.cage import Cage, boundary_distances
 from newton_cagecut.usd import MeshData, read_cage, read_mesh, read_surface
 
 ASSETS = Path(__file__).parent.parent / "assets"
+HANDLES = {"key": 1}  # the others are spheres
 
 
-@pytest.fixture(scope="module")
-def starfish_mesh() -> MeshData:
-    """The stored starfish."""
-    return read_mesh(ASSETS / "starfish.usdc")
+@cache
+def stored_mesh(name: str) -> MeshData:
+    """A stored mesh."""
+    return read_mesh(ASSETS / f"{name}.usdc")
+
+
+@cache
+def stored_cage(name: str) -> Cage:
+    """A stored cage."""
+    return read_cage(ASSETS / f"{name}_cage.usda")
 
 
 @pytest.fixture(scope="module")
@@ -52,18 +62,21 @@ def edge_uses(triangles: np.ndarray) -> np.ndarray:
     return np.array([(b, a) in edges for a, b in edges])
 
 
-def test_starfish_is_a_closed_sphere_of_8158_vertices(starfish_mesh):
-    """The starfish has the vertex count of the paper's, no open edge and no handle, and uses every vertex."""
-    triangles = starfish_mesh.triangles
-    assert starfish_mesh.points.shape == (8158, 3)
-    assert len(triangles) == 2 * 8158 - 4
-    assert edge_uses(triangles).all()
-    assert len(np.unique(triangles)) == 8158
+@pytest.mark.parametrize("name", TABLE_1)
+def test_mesh_is_closed_and_has_the_vertices_of_the_paper(name):
+    """A mesh has the paper's vertex count and uses every vertex; it is a sphere, the key a ring."""
+    mesh, vertex_count = stored_mesh(name), TABLE_1[name].mesh_vertex_count
+    assert mesh.points.shape == (vertex_count, 3)
+    assert len(mesh.triangles) == 2 * vertex_count - 4 + 4 * HANDLES.get(name, 0)
+    assert edge_uses(mesh.triangles).all()
+    assert len(np.unique(mesh.triangles)) == vertex_count
 
 
-def test_starfish_faces_outward_with_even_triangles(starfish_mesh):
+@pytest.mark.parametrize("name", TABLE_1)
+def test_mesh_faces_outward_with_even_triangles(name):
     """Its volume is positive and no triangle is a needle."""
-    corners = starfish_mesh.points[starfish_mesh.triangles]
+    mesh = stored_mesh(name)
+    corners = mesh.points[mesh.triangles]
     assert np.linalg.det(corners).sum() > 0.0
     lengths = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
     area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
@@ -72,57 +85,74 @@ def test_starfish_faces_outward_with_even_triangles(starfish_mesh):
     assert quality.mean() > 0.9
 
 
-def test_starfish_cage_has_the_counts_of_the_paper():
-    """50 vertices and 53 faces: triangles, quads and a pentagon, and one closed component."""
-    cage = read_cage(ASSETS / "starfish_cage.usda")
-    assert (cage.vertex_count, cage.face_count) == (50, 53)
-    assert {len(face) for face in cage.faces} == {3, 4, 5}
-    assert (cage.euler_characteristic, cage.component_count) == (2, 1)
+@pytest.mark.parametrize("name", TABLE_1)
+def test_cage_has_the_counts_of_the_paper(name):
+    """One closed component of the paper's vertices and faces; the jelly's has as many faces as its vertices allow."""
+    cage, paper = stored_cage(name), TABLE_1[name]
+    most = 2 * paper.vertex_count - 4 + 4 * HANDLES.get(name, 0)
+    assert (cage.vertex_count, cage.face_count) == (paper.vertex_count, min(paper.face_count, most))
+    assert (paper.face_count > most) == (name == "jelly")
+    assert cage.euler_characteristic == 2 - 2 * HANDLES.get(name, 0)
+    assert cage.component_count == 1
 
 
-def test_starfish_is_inside_its_cage_with_a_margin(starfish_mesh):
-    """Every vertex is inside, at least 2.5 cm from the skin of a cage of about a metre."""
-    cage = read_cage(ASSETS / "starfish_cage.usda")
-    assert cage.contains(starfish_mesh.points).all()
-    assert least_distance(starfish_mesh.points, cage.vertices[cage.triangles]) > 0.025
+@pytest.mark.parametrize("name", TABLE_1)
+def test_mesh_is_inside_its_cage_with_a_margin(name):
+    """Every vertex is inside, at least half a percent of the cage's diagonal from its faces."""
+    cage, mesh = stored_cage(name), stored_mesh(name)
+    assert cage.contains(mesh.points).all()
+    assert least_distance(mesh.points, cage.vertices[cage.triangles]) > 0.005 * cage.diameter
+
+
+def test_starfish_cage_is_of_triangles_quads_and_a_pentagon():
+    """The faces have three to five corners."""
+    assert {len(face) for face in stored_cage("starfish").faces} == {3, 4, 5}
 
 
 def test_bunny_cage_is_closed_and_coarse():
     """30 to 60 faces, one closed component."""
-    cage = read_cage(ASSETS / "bunny_cage.usda")
+    cage = stored_cage("bunny")
     assert 30 <= cage.face_count <= 60
     assert (cage.euler_characteristic, cage.component_count) == (2, 1)
 
 
 def test_bunny_is_inside_its_cage_with_a_margin(bunny_mesh):
     """Every vertex is inside, at least 5 cm from the skin of a cage of about two metres."""
-    cage = read_cage(ASSETS / "bunny_cage.usda")
+    cage = stored_cage("bunny")
     assert cage.contains(bunny_mesh[0]).all()
     assert least_distance(bunny_mesh[0], cage.vertices[cage.triangles]) > 0.05
 
 
-def test_stored_starfish_is_what_its_script_makes(starfish_mesh):
+@pytest.mark.parametrize("name", TABLE_1)
+def test_stored_mesh_is_what_its_script_makes(name):
     """Running the script again gives the stored arrays."""
-    points, triangles = starfish.starfish_mesh()
-    np.testing.assert_allclose(starfish_mesh.points, points, atol=1e-5)
-    np.testing.assert_array_equal(starfish_mesh.triangles, triangles)
+    points, triangles = getattr(importlib.import_module(f"assets.{name}"), f"{name}_mesh")()
+    np.testing.assert_allclose(stored_mesh(name).points, points, atol=1e-5)
+    np.testing.assert_array_equal(stored_mesh(name).triangles, triangles)
 
 
-def test_stored_cages_are_what_their_scripts_make():
-    """Running the scripts again gives the stored vertices and faces."""
-    for name, make in (("starfish_cage", starfish.starfish_cage), ("bunny_cage", bunny.bunny_cage)):
-        stored = read_mesh(ASSETS / f"{name}.usda")
-        vertices, faces = make()
-        np.testing.assert_allclose(stored.points, vertices, atol=1e-5)
-        assert stored.faces == tuple(faces)
+@pytest.mark.parametrize("name", [*TABLE_1, "bunny"])
+def test_stored_cage_is_what_its_script_makes(name):
+    """Running the script again gives the stored vertices and faces."""
+    stored = read_mesh(ASSETS / f"{name}_cage.usda")
+    vertices, faces = getattr(importlib.import_module(f"assets.{name}"), f"{name}_cage")()
+    np.testing.assert_allclose(stored.points, vertices, atol=1e-5)
+    assert stored.faces == tuple(faces)
 
 
-def test_starfish_is_a_surface_to_embed(starfish_mesh):
+def test_every_stored_asset_has_been_looked_at():
+    """There is no cage or mesh in the folder that these tests leave out."""
+    names = {path.stem.removesuffix("_cage") for path in ASSETS.glob("*.usd?")}
+    assert names == {*TABLE_1, "bunny", "gingerbread"}
+
+
+@pytest.mark.parametrize("name", TABLE_1)
+def test_mesh_is_a_surface_to_embed(name):
     """The reader makes a closed surface of it with the same arrays."""
-    surface = read_surface(ASSETS / "starfish.usdc")
+    surface = read_surface(ASSETS / f"{name}.usdc")
     assert surface.closed
-    np.testing.assert_array_equal(surface.points, starfish_mesh.points)
-    np.testing.assert_array_equal(surface.triangles, starfish_mesh.triangles)
+    np.testing.assert_array_equal(surface.points, stored_mesh(name).points)
+    np.testing.assert_array_equal(surface.triangles, stored_mesh(name).triangles)
 
 
 def test_gingerbread_man_fills_his_cage():

@@ -9,17 +9,24 @@ import pytest
 import warp as wp
 
 from cage_shapes import box
-from harmonic_shapes import assert_identical, interior_points, middle_cut, snapshot
+from harmonic_shapes import MAKERS, UNITS, assert_identical, interior_points, middle_cut, snapshot
 from newton_cagecut.cage import Cage
 from newton_cagecut.harmonic import Domain, HarmonicCoordinates
+from plane_shapes import outline, rectangle
 
 WALKS = 64
 
 
+@pytest.fixture(params=UNITS)
+def cage(request) -> Cage:
+    """The unit square and the unit box."""
+    return MAKERS[request.param]()
+
+
 @pytest.fixture
-def points() -> np.ndarray:
-    """Thirty points of the unit box."""
-    return interior_points(box(), 30, np.random.default_rng(1))
+def points(cage) -> np.ndarray:
+    """Thirty points inside."""
+    return interior_points(cage, 30, np.random.default_rng(1))
 
 
 def bake(cage: Cage | Domain, points: np.ndarray, **options) -> HarmonicCoordinates:
@@ -27,20 +34,20 @@ def bake(cage: Cage | Domain, points: np.ndarray, **options) -> HarmonicCoordina
     return HarmonicCoordinates(cage, points, WALKS, **{"gradients": True, **options})
 
 
-def test_a_walk_takes_64_bytes(points):
-    """Landings and bounds take 64 bytes a walk together, as reported and as allocated."""
-    coordinates = bake(box(), points, point_capacity=40)
-    memory = coordinates.memory()
-    assert memory["landings"] + memory["bounds"] == 64 * 40 * WALKS
+def test_bytes_of_a_walk(cage, points):
+    """Landings and bounds take 64 bytes a walk together, 32 in the plane, as reported and as allocated."""
+    coordinates = bake(cage, points, point_capacity=40)
+    memory, expected = coordinates.memory(), {2: 32, 3: 64}[cage.dimension]
+    assert memory["landings"] + memory["bounds"] == expected * 40 * WALKS
     rows = sum(values.nbytes for values in (*coordinates.landings.values(), coordinates.bounds))
-    assert rows == 64 * 30 * WALKS
-    assert memory["weights"] == 4 * 40 * 8
-    assert memory["gradients"] == 12 * 30 * 8
+    assert rows == expected * 30 * WALKS
+    assert memory["weights"] == 4 * 40 * cage.vertex_count
+    assert memory["gradients"] == 12 * 30 * cage.vertex_count
 
 
-def test_nothing_is_kept_without_cuttable(points, monkeypatch):
+def test_nothing_is_kept_without_cuttable(cage, points, monkeypatch):
     """Without cuttable all walks are forgotten, in batches too, and the weights are the same."""
-    kept, free = bake(box(), points), bake(box(), points, cuttable=False)
+    kept, free = bake(cage, points), bake(cage, points, cuttable=False)
     np.testing.assert_array_equal(free.weights, kept.weights)
     np.testing.assert_array_equal(free.gradients, kept.gradients)
     memory = free.memory()
@@ -52,11 +59,11 @@ def test_nothing_is_kept_without_cuttable(points, monkeypatch):
     np.testing.assert_array_equal(free.weights, kept.weights)
 
 
-def test_no_update_without_cuttable(points):
+def test_no_update_without_cuttable(cage, points):
     """What needs the cache says so."""
-    free = bake(box(), points, cuttable=False)
+    free = bake(cage, points, cuttable=False)
     weights = free.weights
-    edit = middle_cut(box()).advance(to=0.5)
+    edit = middle_cut(cage).advance(to=0.5)
     for call in (
         lambda: free.update(edit),
         lambda: free.set_points([0], points[:1]),
@@ -68,19 +75,19 @@ def test_no_update_without_cuttable(points):
     np.testing.assert_array_equal(free.weights, weights)
 
 
-def test_gradients_of_a_mask(points):
+def test_gradients_of_a_mask(cage, points):
     """A mask gives gradients to some points: the same that all would have, and no memory for the others."""
     mask = np.arange(len(points)) % 3 == 0
-    every, some = bake(box(), points), bake(box(), points, gradients=mask)
+    every, some = bake(cage, points), bake(cage, points, gradients=mask)
     np.testing.assert_array_equal(some.gradients, every.gradients[mask])
     assert some.memory()["gradients"] * 3 == every.memory()["gradients"]
-    assert some.gradients.shape == (10, 8, 3)
+    assert some.gradients.shape == (10, cage.vertex_count, cage.dimension)
 
 
-def test_stats_count_what_happened(points):
+def test_stats_count_what_happened(cage, points):
     """Every walk is walked again, evaluated again or reused; those of the last kind have the landings of before."""
-    cut = middle_cut(box())
-    coordinates = bake(cut.base, points)
+    cut = middle_cut(cage)
+    coordinates = bake(cage, points)
     for depth in (0.3, 0.6, 1.1):
         before = coordinates.landings
         stats = coordinates.update(cut.advance(to=depth))
@@ -96,10 +103,10 @@ def test_stats_count_what_happened(points):
     assert (stats.rewalked, stats.on_face, stats.reused) == (stats.walk_count, 0, 0)
 
 
-def test_update_touches_few_points():
+@pytest.mark.parametrize("cage", [outline(rectangle((0, 0), (8, 1))), box((8.0, 1.0, 1.0))], ids=["plane", "space"])
+def test_update_touches_few_points(cage):
     """A short cut leaves the walks of points far away alone."""
-    cage = box((8.0, 1.0, 1.0))
-    points = np.array([[x, 0.5, 0.5] for x in np.linspace(0.4, 7.6, 19)])
+    points = np.array([[x, 0.5, 0.5][: cage.dimension] for x in np.linspace(0.4, 7.6, 19)])
     coordinates, cut = bake(cage, points), middle_cut(cage)
     before = coordinates.landings
     stats = coordinates.update(cut.advance(to=0.1))
@@ -108,13 +115,12 @@ def test_update_touches_few_points():
     assert same[:5].all()
 
 
-def test_edit_of_another_cage_is_refused(points):
+def test_edit_of_another_cage_is_refused(cage, points):
     """An edit that is skipped, repeated or of another cage is refused, and the right one is taken afterwards."""
-    cage = box()
     coordinates, cut = bake(cage, points), middle_cut(cage)
     edits = [cut.advance(to=depth) for depth in (0.3, 0.6)]
     before = snapshot(coordinates)
-    for edit in (edits[1], middle_cut(box()).advance(to=0.3)):
+    for edit in (edits[1], middle_cut(Cage(cage.vertices, cage.faces)).advance(to=0.3)):
         with pytest.raises(ValueError, match="another cage"):
             coordinates.update(edit)
     assert_identical(before, snapshot(coordinates))
@@ -129,14 +135,15 @@ def test_edit_of_another_cage_is_refused(points):
     assert_identical(snapshot(coordinates), snapshot(other))
 
 
-def test_capacity_exceeded_changes_nothing(points):
+def test_capacity_exceeded_changes_nothing(cage, points):
     """A cut that needs more vertices than were reserved is refused before anything has changed; a smaller one fits."""
-    cage = box()
-    coordinates = bake(cage, points, vertex_capacity=14)
+    needed = 2 * cage.vertex_count
+    capacity = {2: 7, 3: 14}[cage.dimension]
+    coordinates = bake(cage, points, vertex_capacity=capacity)
     pointer = coordinates.weights_array.ptr
     before, walls = snapshot(coordinates), coordinates.domain.walls.triangle_count
     complete = middle_cut(cage)
-    with pytest.raises(ValueError, match=r"16 vertices.*14.*vertex_capacity"):
+    with pytest.raises(ValueError, match=rf"{needed} vertices.*{capacity}.*vertex_capacity"):
         coordinates.update(complete.advance(to=1.1))
     assert_identical(before, snapshot(coordinates))
     assert coordinates.domain.walls.triangle_count == walls
@@ -149,12 +156,11 @@ def test_capacity_exceeded_changes_nothing(points):
     assert coordinates.weights_array.ptr == pointer
     assert np.all(coordinates.weights_array.numpy()[:, edit.cage.vertex_count :] == 0.0)
     with pytest.raises(ValueError, match="vertex_capacity"):
-        bake(cage, points, vertex_capacity=7)
+        bake(cage, points, vertex_capacity=cage.vertex_count - 1)
 
 
-def test_shared_domain(points):
+def test_shared_domain(cage, points):
     """Coordinates that share a domain follow edits as if each had its own, and none can miss one."""
-    cage = box()
     domain = Domain(cage, quads="mean_value", distance="grid", device=wp.get_device("cpu"))
     first, second, own = bake(domain, points[:10]), bake(domain, points), bake(cage, points)
     cut = middle_cut(cage)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cage_shapes import box, hexagonal_prism, prism, tetrahedron
-from harmonic_shapes import interior_points, middle_cut, side_vertices
+from harmonic_shapes import interior_points, mean_value, middle_cut, side_vertices
 from newton_cagecut.cage import Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
 
@@ -37,17 +37,6 @@ def points_on_face(cage: Cage, face: int, count: int, rng: np.random.Generator) 
 def face_keys(cage: Cage, face: int, count: int) -> np.ndarray:
     """The face's key for each point."""
     return np.full(count, cage.face_key[face])
-
-
-def mean_value(corners: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Floater's mean value coordinates from angles, shape (corner_count,)."""
-    offset = corners - point
-    length = np.linalg.norm(offset, axis=1)
-    after = np.roll(offset, -1, axis=0)
-    cosine = np.einsum("ij,ij->i", offset, after) / (length * np.roll(length, -1))
-    tangent = np.tan(np.arccos(np.clip(cosine, -1.0, 1.0)) / 2.0)
-    weight = (np.roll(tangent, 1) + tangent) / length
-    return weight / weight.sum()
 
 
 def assert_interpolates(weights: np.ndarray, cage: Cage, points: np.ndarray) -> None:

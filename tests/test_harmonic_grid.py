@@ -11,9 +11,10 @@ from cage_shapes import merged_cube, star_prism, u_shape
 from harmonic_shapes import assert_identical, crossing_blade, interior_points, random_blade, snapshot
 from newton_cagecut.cage import Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from plane_shapes import PLANES
 
 
-@pytest.mark.parametrize("make", [merged_cube, star_prism, u_shape])
+@pytest.mark.parametrize("make", [merged_cube, star_prism, u_shape, PLANES["comb"], PLANES["annulus"]])
 def test_grid_equals_all_walls(make):
     """Landings, bounds, weights and gradients are the same by grid and by all walls, after merged cuts too."""
     rng = np.random.default_rng(1)

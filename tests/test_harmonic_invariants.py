@@ -7,8 +7,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cage_shapes import SHAPES, box, merged_cube, star_prism
 from harmonic_shapes import (
+    MAKERS,
+    UNITS,
     assert_identical,
     assert_reproduces,
     crossing_blade,
@@ -18,15 +19,19 @@ from harmonic_shapes import (
     random_blade,
     snapshot,
 )
-from newton_cagecut.cage import Blade, Cage, Cut
+from newton_cagecut.cage import Blade, Cage, Cut, boundary_distances
 from newton_cagecut.harmonic import HarmonicCoordinates
+from plane_shapes import PLANES
+
+PAIR = pytest.mark.parametrize("name", ["star", "merged_cube"])
+"""A cage of each dimension that is not simple."""
 
 
-@pytest.mark.parametrize("name", ["tetrahedron", "box", "merged_cube", "star_prism"])
+@pytest.mark.parametrize("name", [*PLANES, "tetrahedron", "box", "merged_cube", "star_prism"])
 def test_rest_shape_is_reproduced(name):
     """Weights sum to 1 and give the rest position, gradients leave rigid motions free, before and after cuts."""
     rng = np.random.default_rng(1)
-    cage = SHAPES[name]()
+    cage = MAKERS[name]()
     points = interior_points(cage, 60, rng)
     coordinates = HarmonicCoordinates(cage, points, 64, gradients=True)
     assert_reproduces(coordinates, points)
@@ -38,14 +43,13 @@ def test_rest_shape_is_reproduced(name):
         assert_reproduces(coordinates, points)
 
 
-def test_identities_are_tight_inside():
+@PAIR
+def test_identities_are_tight_inside(name):
     """Away from walls the gradients' identities hold to 1e-4 with no allowance for their size, cut or not."""
-    cage = merged_cube()
+    cage = MAKERS[name]()
     points = interior_points(cage, 200, np.random.default_rng(2))
     cut = middle_cut(cage)
-    far = np.abs(cut.plane.distance(points)) > 0.02
-    far &= np.minimum(points, 1.0 - points).min(axis=1) > 0.02
-    points = points[far][:60]
+    points = points[np.minimum(np.abs(cut.plane.distance(points)), boundary_distances(cage, points)) > 0.02][:60]
     coordinates = HarmonicCoordinates(cage, points, 64, gradients=True)
     for depth in (None, 0.5, 1.1):
         if depth is not None:
@@ -53,18 +57,20 @@ def test_identities_are_tight_inside():
         slopes = coordinates.gradients.astype(np.float64)
         np.testing.assert_allclose(slopes.sum(axis=1), 0.0, atol=1e-4)
         identity = np.einsum("vi,pvj->pij", coordinates.cage.vertices, slopes)
-        np.testing.assert_allclose(identity, np.broadcast_to(np.eye(3), identity.shape), atol=1e-4)
+        np.testing.assert_allclose(identity, np.broadcast_to(np.eye(cage.dimension), identity.shape), atol=1e-4)
 
 
 @pytest.mark.parametrize("distance", [1e-7, 1e-6, 1e-5, 1e-4])
-def test_next_to_walls(distance):
+@PAIR
+def test_next_to_walls(name, distance):
     """Points within 1e-7 to 1e-4 of a face or of a cut reproduce their position and have bounded weights."""
     rng = np.random.default_rng(3)
-    cage = merged_cube()
+    cage = MAKERS[name]()
     cut = middle_cut(cage)
-    corners = cage.vertices.min(axis=0) + 0.05, cage.vertices.max(axis=0) - 0.05
-    beside = rng.uniform(*corners, (20, 3))
+    beside = interior_points(cage, 200, rng)
     beside -= cut.plane.distance(beside)[:, None] * cut.plane.normal
+    beside = beside[cage.contains(beside) & (boundary_distances(cage, beside) > 0.05)][:20]
+    assert len(beside) == 20
     beside += np.where(np.arange(20) % 2 == 0, distance, -distance)[:, None] * cut.plane.normal
     points = np.concatenate([points_near_faces(cage, distance, rng), beside])
     coordinates = HarmonicCoordinates(cage, points, 64, gradients=True)
@@ -76,10 +82,11 @@ def test_next_to_walls(distance):
 
 
 @pytest.mark.parametrize("walks", [16, 64])
-def test_few_walks_do_not_extrapolate(walks):
+@PAIR
+def test_few_walks_do_not_extrapolate(name, walks):
     """Next to a wall, where few landings are off it, weights stay bounded and exact: no fit is extrapolated."""
     rng = np.random.default_rng(3)
-    cage = merged_cube()
+    cage = MAKERS[name]()
     points = np.concatenate([points_near_faces(cage, distance, rng) for distance in [1e-2] * 10 + [1e-3] * 10])
     points = points[cage.contains(points)]
     coordinates = HarmonicCoordinates(cage, points, walks, gradients=True)
@@ -90,19 +97,21 @@ def test_few_walks_do_not_extrapolate(walks):
     assert_reproduces(coordinates, points)
 
 
-@pytest.mark.parametrize("make", [box, star_prism])
-def test_other_pieces_have_no_weight(make):
+@pytest.mark.parametrize("name", ["square", "star", "holed_square", "box", "star_prism"])
+def test_other_pieces_have_no_weight(name):
     """After complete cuts the weights and gradients of other pieces' vertices are zero exactly."""
     rng = np.random.default_rng(4)
-    cage = make()
+    cage = MAKERS[name]()
     points = interior_points(cage, 80, rng)
     coordinates = HarmonicCoordinates(cage, points, 64, gradients=True)
-    for normal in ([1.0, 0.1, 0.0], [0.1, 1.0, 0.2]):
-        cut = Cut(cage, Blade(cage.vertices.mean(axis=0) + 0.02, np.cross(normal, [0.0, 0.1, 1.0]), [0.0, 0.1, 1.0]))
+    up = np.array([0.0, 0.1, 1.0])
+    vectors = {2: [[[0.1, 1.0]], [[1.0, 0.1]]], 3: [[np.cross(n, up), up] for n in ([1.0, 0.1, 0.0], [0.1, 1.0, 0.2])]}
+    for directions in vectors[cage.dimension]:
+        cut = Cut(cage, Blade(cage.vertices.mean(axis=0) + 0.02, *directions))
         for depth in (0.6, 1.1):
             coordinates.update(cut.advance(to=depth * cut.length))
         cage = cut.cage
-    assert cage.component_count >= 3
+    assert cage.piece_count >= 3
     foreign = cage.vertex_piece[None] != cage.piece_of(points)[:, None]
     assert np.all(coordinates.weights[foreign] == 0.0)
     assert np.all(coordinates.gradients[foreign] == 0.0)
@@ -114,9 +123,11 @@ def _moved(cage: Cage, scale: float, offset: float) -> Cage:
 
 
 @pytest.mark.parametrize(("scale", "offset"), [(1e-3, 0.0), (1e3, 0.0), (1.0, 1e4)])
-def test_size_and_place_do_not_matter(scale, offset):
+@PAIR
+def test_size_and_place_do_not_matter(name, scale, offset):
     """The same cage of 1 mm, of 1 km or 10 km away has the same weights, cut or not; gradients scale."""
-    cage, moved = merged_cube(), _moved(merged_cube(), scale, offset)
+    cage = MAKERS[name]()
+    moved = _moved(cage, scale, offset)
     points = interior_points(cage, 40, np.random.default_rng(5))
     here = HarmonicCoordinates(cage, points, 64, gradients=True)
     there = HarmonicCoordinates(moved, points * scale + offset, 64, gradients=True)
@@ -129,9 +140,10 @@ def test_size_and_place_do_not_matter(scale, offset):
         np.testing.assert_allclose(there.gradients * scale, here.gradients, atol=1e-4)
 
 
-def test_seed():
+@pytest.mark.parametrize("name", UNITS)
+def test_seed(name):
     """The same seed gives the same bits, another seed other weights."""
-    cage = box()
+    cage = MAKERS[name]()
     points = interior_points(cage, 10, np.random.default_rng(6))
     first, again, other = (HarmonicCoordinates(cage, points, 64, seed, gradients=True) for seed in (1, 1, 2))
     assert_identical(snapshot(first), snapshot(again))

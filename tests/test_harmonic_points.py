@@ -7,18 +7,41 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cage_shapes import box, star_prism
-from harmonic_shapes import assert_identical, assert_reproduces, interior_points, middle_cut, snapshot
+from harmonic_shapes import (
+    MAKERS,
+    UNITS,
+    assert_identical,
+    assert_reproduces,
+    interior_points,
+    middle_cut,
+    snapshot,
+)
 from newton_cagecut.cage import Cage
 from newton_cagecut.harmonic import HarmonicCoordinates
 
 WALKS = 64
-INSIDE = np.array([[0.3, 0.4, 0.5], [0.6, 0.2, 0.7]])
 
 
-def bake(points: np.ndarray, cage: Cage | None = None, **options) -> HarmonicCoordinates:
-    """Coordinates with gradients, in a unit box by default."""
-    return HarmonicCoordinates(cage or box(), points, WALKS, **{"gradients": True, **options})
+@pytest.fixture(params=UNITS)
+def cage(request) -> Cage:
+    """The unit square and the unit box."""
+    return MAKERS[request.param]()
+
+
+@pytest.fixture
+def inside(cage) -> np.ndarray:
+    """Two points inside."""
+    return np.array([[0.3, 0.4, 0.5], [0.6, 0.2, 0.7]])[:, : cage.dimension]
+
+
+def bake(cage: Cage, points: np.ndarray, **options) -> HarmonicCoordinates:
+    """Coordinates with gradients."""
+    return HarmonicCoordinates(cage, points, WALKS, **{"gradients": True, **options})
+
+
+def small_obstacle(cage: Cage, middle: np.ndarray) -> Cage:
+    """A unit cage of a tenth of the size about a point."""
+    return Cage(0.1 * (cage.vertices - 0.5) + middle, cage.faces)
 
 
 def per_point(coordinates: HarmonicCoordinates, count: int) -> dict[str, np.ndarray]:
@@ -26,40 +49,21 @@ def per_point(coordinates: HarmonicCoordinates, count: int) -> dict[str, np.ndar
     return {name: values.reshape(count, -1) for name, values in snapshot(coordinates).items()}
 
 
-def test_points_outside_are_counted():
-    """Points outside are refused with their count, the farthest one and its distance."""
-    points = np.concatenate([INSIDE, [[1.25, 0.5, 0.5], [0.5, -0.5, 0.5]]])
-    with pytest.raises(ValueError, match=r"2 of 4 points lie outside.*point 3.*0\.5 m"):
-        bake(points)
-    between_spikes = 0.9 * np.array([[np.cos(0.1 + np.pi / 5), np.sin(0.1 + np.pi / 5), 0.5]])
-    with pytest.raises(ValueError, match="1 of 1 points lie outside"):
-        bake(between_spikes, star_prism())
-
-
-def test_points_on_the_boundary_are_taken():
-    """Points exactly on a face or in a corner are no points outside, and have the weights of the boundary."""
-    points = np.array([[0.0, 0.5, 0.5], [0.25, 1.0, 0.5], [1.0, 1.0, 1.0], [0.0, 0.0, 0.5]])
-    coordinates = bake(points)
-    assert_reproduces(coordinates, points, gradients=False)
-    corner = np.flatnonzero((coordinates.cage.vertices == 1.0).all(axis=1))
-    np.testing.assert_allclose(coordinates.weights[2, corner], 1.0, atol=1e-5)
-
-
-def test_bad_points():
-    """A point that is not finite or not three numbers is named."""
+def test_bad_points(cage, inside):
+    """A point that is not finite, or has not as many numbers as the space has dimensions, is named."""
+    inside[1, 1] = np.nan
     with pytest.raises(ValueError, match="point 1 is not finite"):
-        bake(np.array([[0.5, 0.5, 0.5], [0.5, np.nan, 0.5]]))
-    with pytest.raises(ValueError, match=r"shape \(n, 3\).*\(2, 2\)"):
-        bake(np.zeros((2, 2)))
-    with pytest.raises(ValueError, match=r"\(n, 3\).*\(3,\)"):
-        bake(np.zeros(3))
+        bake(cage, inside)
+    d = cage.dimension
+    for shape in ((2, 5 - d), (d,), (2, d, 1)):
+        with pytest.raises(ValueError, match=rf"shape \(n, {d}\), not \({', '.join(map(str, shape))}"):
+            bake(cage, np.zeros(shape))
 
 
-def test_no_points():
+def test_no_points(cage):
     """No points are no error: the weights are empty, and updates have nothing to do."""
-    cage = box()
-    coordinates = bake(np.zeros((0, 3)), cage)
-    assert coordinates.weights.shape == (0, 8)
+    coordinates = bake(cage, np.zeros((0, cage.dimension)))
+    assert coordinates.weights.shape == (0, cage.vertex_count)
     edit = middle_cut(cage).advance(to=0.5)
     assert coordinates.update(edit).walk_count == 0
     assert coordinates.weights.shape == (0, edit.cage.vertex_count)
@@ -83,21 +87,20 @@ def test_no_points():
         ("quads", "bilinear", "mean_value, harmonic"),
     ],
 )
-def test_bad_options_are_named(option, value, text):
+def test_bad_options_are_named(cage, inside, option, value, text):
     """An option out of its range is refused with its name and its range."""
     with pytest.raises(ValueError, match=f"{option} must .*{text}"):
-        HarmonicCoordinates(box(), INSIDE, **{option: value})
+        HarmonicCoordinates(cage, inside, **{option: value})
 
 
 @pytest.mark.parametrize("depth", [None, 0.6, 1.1])
-def test_set_points_touches_no_other(depth):
+def test_set_points_touches_no_other(cage, depth):
     """Added and moved points equal those of a fresh bake with the same edits; all others keep their bits."""
-    cage = box()
     old = interior_points(cage, 20, np.random.default_rng(1))
     fresh = np.concatenate([old, interior_points(cage, 5, np.random.default_rng(2))])
     fresh[[3, 11]] = interior_points(cage, 2, np.random.default_rng(3))
-    moving = bake(old, cage, point_capacity=25)
-    baked = bake(fresh, cage)
+    moving = bake(cage, old, point_capacity=25)
+    baked = bake(cage, fresh)
     if depth is not None:
         edit = middle_cut(cage).advance(to=depth)
         moving.update(edit)
@@ -116,11 +119,10 @@ def test_set_points_touches_no_other(depth):
     assert_identical(after, {name: per_point(baked, 25)[name] for name in after})
 
 
-def test_set_points_then_update():
+def test_set_points_then_update(cage):
     """Points that were set follow later cuts like any other."""
-    cage = box()
     points = interior_points(cage, 20, np.random.default_rng(4))
-    coordinates = bake(points[:12], cage, point_capacity=20, gradients=False)
+    coordinates = bake(cage, points[:12], point_capacity=20, gradients=False)
     cut = middle_cut(cage)
     coordinates.update(cut.advance(to=0.4))
     coordinates.set_points(np.arange(12, 20), points[12:])
@@ -132,13 +134,12 @@ def test_set_points_then_update():
     assert_reproduces(coordinates, points, gradients=False)
 
 
-def test_points_on_a_side_of_the_cut():
+def test_points_on_a_side_of_the_cut(cage, inside):
     """Points set on the two sides of a cut have the weights of their side, and keep them exact as the cut goes on."""
-    cage = box()
-    coordinates = bake(INSIDE, cage, point_capacity=4)
+    coordinates = bake(cage, inside, point_capacity=4)
     cut = middle_cut(cage)
     coordinates.update(cut.advance(to=0.5))
-    place = np.array([[0.47, 0.4, 0.9], [0.47, 0.4, 0.9]])
+    place = np.repeat([[0.47, *[0.4, 0.9][-cage.dimension + 1 :]]], 2, axis=0)
     coordinates.set_points([2, 3], place, [2 * cut.wall, 2 * cut.wall + 1])
     for depth in (0.5, 0.8, 1.1):
         coordinates.update(cut.advance(to=depth))
@@ -152,11 +153,11 @@ def test_points_on_a_side_of_the_cut():
     assert used[0] != used[1]
 
 
-def test_set_points_refuses():
+def test_set_points_refuses(cage, inside):
     """Points outside, beyond the capacity, with gaps, twice or of the wrong count are refused; nothing has changed."""
-    coordinates = bake(INSIDE, point_capacity=4)
+    coordinates = bake(cage, inside, point_capacity=4)
     before = snapshot(coordinates)
-    good = np.array([[0.5, 0.5, 0.5]])
+    good = np.full((1, cage.dimension), 0.5)
     for indices, points, text in (
         ([0], good + 2.0, "outside"),
         ([0], good * np.nan, "not finite"),
@@ -165,23 +166,25 @@ def test_set_points_refuses():
         ([-1], good, "no point"),
         ([0, 0], np.repeat(good, 2, axis=0), "twice"),
         ([0, 1], good, "shape"),
+        ([0], good[:, :-1], "shape"),
         ([2, 3, 4], np.repeat(good, 3, axis=0), "point_capacity"),
     ):
         with pytest.raises(ValueError, match=text):
             coordinates.set_points(np.array(indices), points)
     assert coordinates.point_count == 2
     assert_identical(before, snapshot(coordinates))
-    with pytest.raises(ValueError, match="keys of the cage's walls are 0 to 11"):
-        coordinates.set_points([0], good, [12])
+    keys = 2 * cage.face_count
+    with pytest.raises(ValueError, match=f"keys of the cage's walls are 0 to {keys - 1}"):
+        coordinates.set_points([0], good, [keys])
 
 
-def test_bake_in_a_cut_cage():
+def test_bake_in_a_cut_cage(cage):
     """Coordinates made in a cage with a cut that is still open follow it from there."""
     rng = np.random.default_rng(5)
-    cut = middle_cut(box())
+    cut = middle_cut(cage)
     cut.advance(to=0.5)
-    points = interior_points(cut.base, 30, rng)
-    coordinates = bake(points, cut.cage)
+    points = interior_points(cage, 30, rng)
+    coordinates = bake(cut.cage, points)
     assert_reproduces(coordinates, points)
     for depth in (0.8, 1.1):
         coordinates.update(cut.advance(to=depth))
@@ -190,11 +193,10 @@ def test_bake_in_a_cut_cage():
 
 
 @pytest.mark.parametrize("depth", [None, 0.6])
-def test_removed_points_leave_the_others_alone(depth):
+def test_removed_points_leave_the_others_alone(cage, depth):
     """Removed points weigh nothing; all others keep their bits, through a cut and a recompute too."""
-    cage = box()
     points = interior_points(cage, 20, np.random.default_rng(6))
-    full, fewer = bake(points, cage), bake(points, cage)
+    full, fewer = bake(cage, points), bake(cage, points)
     cut = middle_cut(cage)
     if depth is not None:
         edit = cut.advance(to=depth)
@@ -219,14 +221,13 @@ def test_removed_points_leave_the_others_alone(depth):
         assert_identical(updated, snapshot(fewer))
 
 
-def test_removed_numbers_are_used_again():
+def test_removed_numbers_are_used_again(cage):
     """A point put where another was removed is what it had been from the start; it follows cuts again."""
-    cage = box()
     points = interior_points(cage, 12, np.random.default_rng(7))
-    expected = bake(points, cage)
+    expected = bake(cage, points)
     other = points.copy()
     other[[2, 5]] = other[[5, 2]]
-    coordinates = bake(other, cage, point_capacity=13)
+    coordinates = bake(cage, other, point_capacity=13)
     cut = middle_cut(cage)
     edit = cut.advance(to=0.4)
     coordinates.remove_points([5, 2])
@@ -241,34 +242,31 @@ def test_removed_numbers_are_used_again():
     assert_identical(snapshot(coordinates), snapshot(expected))
 
 
-def test_all_points_removed():
+def test_all_points_removed(cage, inside):
     """With every point removed there is nothing left to walk, and edits are taken all the same."""
-    cage = box()
-    coordinates = bake(INSIDE, cage)
+    coordinates = bake(cage, inside)
     coordinates.remove_points([0, 1])
     stats = coordinates.update(middle_cut(cage).advance(to=0.5))
     assert stats.walk_count == stats.rewalked == coordinates.recompute().rewalked == 0
     assert not coordinates.weights.any()
 
 
-def test_removal_is_undone_by_a_snapshot():
+def test_removal_is_undone_by_a_snapshot(cage, inside):
     """Restoring a snapshot brings removed points back, and removes those again that were removed then."""
-    coordinates = bake(interior_points(box(), 10, np.random.default_rng(8)))
+    coordinates = bake(cage, interior_points(cage, 10, np.random.default_rng(8)))
     coordinates.remove_points([3])
     known, kept = snapshot(coordinates), coordinates.snapshot()
     coordinates.remove_points([0, 9])
-    coordinates.set_points([3], INSIDE[:1])
+    coordinates.set_points([3], inside[:1])
     coordinates.restore(kept)
     np.testing.assert_array_equal(coordinates.removed_points, [3])
     assert_identical(known, snapshot(coordinates))
 
 
-def test_obstacle_where_a_point_was_removed():
+def test_obstacle_where_a_point_was_removed(cage, inside):
     """An obstacle may cover a point once it is removed."""
-    cage = box()
-    coordinates = bake(INSIDE, cage)
-    small = box((0.1, 0.1, 0.1))
-    edit = cage.insert(Cage(small.vertices - small.vertices.mean(axis=0) + INSIDE[0], small.faces))
+    coordinates = bake(cage, inside)
+    edit = cage.insert(small_obstacle(cage, inside[0]))
     with pytest.raises(ValueError, match="remove the points first"):
         coordinates.update(edit)
     coordinates.remove_points([0])
@@ -278,9 +276,9 @@ def test_obstacle_where_a_point_was_removed():
     assert_identical(updated, snapshot(coordinates))
 
 
-def test_remove_points_refuses():
+def test_remove_points_refuses(cage, inside):
     """What is no point, was removed, is there twice or is no number is refused; nothing has changed then."""
-    coordinates = bake(INSIDE)
+    coordinates = bake(cage, inside)
     coordinates.remove_points([1])
     before = snapshot(coordinates)
     for indices, error, text in (
@@ -296,4 +294,4 @@ def test_remove_points_refuses():
     np.testing.assert_array_equal(coordinates.removed_points, [1])
     assert_identical(before, snapshot(coordinates))
     with pytest.raises(ValueError, match="cuttable=False"):
-        bake(INSIDE, cuttable=False).remove_points([0])
+        bake(cage, inside, cuttable=False).remove_points([0])

@@ -9,21 +9,25 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cage_shapes import SHAPES, box
+from cage_shapes import box
 from harmonic_shapes import (
     DEVICES,
+    MAKERS,
+    UNITS,
     assert_identical,
     assert_reproduces,
     crossing_blade,
     interior_points,
+    middle_cut,
     random_blade,
     snapshot,
 )
 from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from plane_shapes import outline, rectangle
 
 RANDOM = settings(
-    max_examples=10, deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]
+    max_examples=6, deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]
 )
 
 
@@ -46,13 +50,13 @@ def follow(coordinates: HarmonicCoordinates, cut: Cut, depths: np.ndarray) -> li
     return edits
 
 
-@pytest.mark.parametrize("name", ["tetrahedron", "box", "merged_cube"])
+@pytest.mark.parametrize("name", ["square", "holed_square", "star", "tetrahedron", "box", "merged_cube"])
 @RANDOM
 @given(seed=st.integers(0, 2**32 - 1))
 def test_update_equals_recompute(name, seed):
     """Two random cuts, the second through the first, in random steps; some points next to the walls."""
     rng = np.random.default_rng(seed)
-    cage = SHAPES[name]()
+    cage = MAKERS[name]()
     points = interior_points(cage, 40, rng)
     coordinates = bake(cage, points)
     first = Cut(cage, random_blade(rng, cage))
@@ -65,30 +69,32 @@ def test_update_equals_recompute(name, seed):
 
 
 @pytest.mark.parametrize("device", DEVICES)
-def test_devices(device):
+@pytest.mark.parametrize("name", UNITS)
+def test_devices(name, device):
     """The identity holds on every device that there is."""
     rng = np.random.default_rng(3)
-    cage = box()
+    cage = MAKERS[name]()
     coordinates = bake(cage, interior_points(cage, 60, rng), device=device)
     cut = Cut(cage, random_blade(rng, cage))
     follow(coordinates, cut, np.linspace(0.1, 1.1, 5) * cut.length)
 
 
-@pytest.mark.parametrize("normal", [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.3, -0.5, 0.8]])
+NORMALS = [[1.0, 0.0], [0.6, 0.8], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.3, -0.5, 0.8]]
+
+
+@pytest.mark.parametrize("normal", NORMALS)
 @pytest.mark.parametrize("target", ["landing", "query point", "front at a landing", "edge"])
 def test_adversarial_blades(target, normal):
     """A blade whose plane or front passes exactly through a landing or a query point, or runs along an edge."""
     rng = np.random.default_rng(11)
-    cage = box((1.0, 0.9, 0.8))
+    size = np.array([1.0, 0.9, 0.8][: len(normal)])
+    cage = outline(rectangle((0.0, 0.0), size)) if len(normal) == 2 else box(size)
     points = interior_points(cage, 30, rng)
     coordinates = bake(cage, points)
     landing = coordinates.domain.frame.center + coordinates.domain.frame.half_side * coordinates.landings["point"][777]
-    unit = np.array(normal) / np.linalg.norm(normal)
-    edge = np.cross(unit, [0.1, 0.2, 0.97])
     origin = {"query point": points[3], "edge": cage.vertices[0]}.get(target, landing)
-    if target == "edge":
-        edge, unit = cage.vertices[1] - cage.vertices[0], np.array([0.1, 0.2, 0.97])
-    cut = Cut(cage, Blade(origin, edge, np.cross(unit, edge)))
+    along = cage.vertices[1] - cage.vertices[0] if target == "edge" else None
+    cut = Cut(cage, Blade(origin, *_directions(np.array(normal), along)))
     depths = np.linspace(0.25, 1.1, 4) * cut.length
     if target == "front at a landing":
         reached = cut.plane.coordinates(origin[None])[0, 1] - cut.section.node_coordinates[:, 1].min()
@@ -97,25 +103,39 @@ def test_adversarial_blades(target, normal):
     follow(coordinates, cut, depths)
 
 
-def test_front_through_query_points():
+def _directions(normal: np.ndarray, along: np.ndarray | None) -> list[np.ndarray]:
+    """A blade's edge, if it has one, and its direction, across a normal; or along an edge, with no regard to that."""
+    if len(normal) == 2:
+        return [np.array([-normal[1], normal[0]]) if along is None else along]
+    if along is not None:
+        return [along, np.cross([0.1, 0.2, 0.97], along)]
+    edge = np.cross(normal, [0.1, 0.2, 0.97])
+    return [edge, np.cross(normal, edge)]
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_front_through_query_points(name):
     """Points exactly on the plane of the cut, met by its front one after the other, keep finite exact weights."""
-    cage = box()
+    cage = MAKERS[name]()
     heights = np.linspace(0.05, 0.95, 10)
     points = np.c_[np.full(10, 0.47), np.linspace(0.1, 0.9, 10), heights]
+    points = np.delete(points, np.arange(1, 4 - cage.dimension), axis=1)
     coordinates = bake(cage, points, walks=32)
-    cut = Cut(cage, Blade([0.47, 0.5, 0.5], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]))
-    follow(coordinates, cut, 1.0 - heights[::-1])
+    follow(coordinates, middle_cut(cage), np.array([*(1.0 - heights[::-1]), 1.1]))
     assert np.isfinite(coordinates.weights).all()
     assert np.isfinite(coordinates.gradients).all()
     assert_reproduces(coordinates, points, gradients=False)
 
 
-def test_step_by_step_is_one_step():
+@pytest.mark.parametrize("name", UNITS)
+def test_step_by_step_is_one_step(name):
     """Twenty small steps and one large step give weights of the same walls: equal up to where walls are split."""
     rng = np.random.default_rng(5)
-    cage = box()
+    cage = MAKERS[name]()
     points = interior_points(cage, 20, rng)
-    blade = Blade([0.5, 0.4, 0.5], [0.2, 1.0, 0.1], [0.0, 0.3, -1.0])
+    blade = Blade(
+        *{2: ([0.5, 0.5], [0.3, -1.0]), 3: ([0.5, 0.4, 0.5], [0.2, 1.0, 0.1], [0.0, 0.3, -1.0])}[cage.dimension]
+    )
     many, one = bake(cage, points, 256), bake(cage, points, 256)
     cut = Cut(cage, blade)
     for depth in np.linspace(0.0, 0.6, 21)[1:]:
@@ -126,11 +146,13 @@ def test_step_by_step_is_one_step():
     np.testing.assert_allclose(many.weights, one.weights, atol=0.02)
 
 
-def test_empty_edit():
+@pytest.mark.parametrize("name", UNITS)
+def test_empty_edit(name):
     """A blade that misses the cage changes nothing and walks nothing."""
-    cage = box()
+    cage = MAKERS[name]()
     coordinates = bake(cage, interior_points(cage, 10, np.random.default_rng(0)))
     before = snapshot(coordinates)
-    stats = coordinates.update(Cut(cage, Blade([5.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0])).advance(to=3.0))
+    missing = Blade(5.0 + np.zeros(cage.dimension), *np.eye(cage.dimension)[1:])
+    stats = coordinates.update(Cut(cage, missing).advance(to=3.0))
     assert (stats.rewalked, stats.on_face, stats.resolved_points) == (0, 0, 0)
     assert_identical(before, snapshot(coordinates))

@@ -14,13 +14,16 @@ from .cage import Cage
 _CHUNK = 1 << 18
 
 
-def check_inside(cage: Cage, points: np.ndarray, *, which: np.ndarray | None = None) -> None:
+def check_inside(cage: Cage, points: np.ndarray, *, which: np.ndarray | None = None) -> np.ndarray:
     """Check that points lie inside a cage or, within its tolerance, on it.
 
     Args:
         cage: The cage.
-        points: Points, shape (point_count, 3) [m].
+        points: Points, shape (point_count, dimension) [m].
         which: Points to check, by index; all by default.
+
+    Returns:
+        Those of them that lie outside, but no farther than the tolerance, by index, ascending where ``which`` is.
 
     Raises:
         ValueError: If some points are outside; the text has their count, the worst one and its distance.
@@ -29,15 +32,16 @@ def check_inside(cage: Cage, points: np.ndarray, *, which: np.ndarray | None = N
     which = np.arange(len(points)) if which is None else which
     outside = which[~cage.contains(points[which])]
     if len(outside) == 0:
-        return
+        return outside
     distance = boundary_distances(cage, points[outside])
-    outside, distance = outside[distance > cage.length_tolerance], distance[distance > cage.length_tolerance]
-    if len(outside):
+    far = np.count_nonzero(distance > cage.length_tolerance)
+    if far:
         worst = int(np.argmax(distance))
         raise ValueError(
-            f"{len(outside)} of {len(points)} points lie outside the cage, the farthest (point {outside[worst]}) by "
+            f"{far} of {len(points)} points lie outside the cage, the farthest (point {outside[worst]}) by "
             f"{distance[worst]:.4g} m; make the cage larger or move the points into it"
         )
+    return outside
 
 
 def boundary_distances(cage: Cage, points: np.ndarray) -> np.ndarray:

@@ -55,6 +55,21 @@ def measure_cells(
     counts[cell] = count
 
 
+@wp.func
+def _put_nearest_first(triangles: WallTriangles, cells: GridCells, first: int, last: int, center: wp.vec3):
+    """Swap the candidate that is nearest to the cell's centre to the front: most others are then rejected at once."""
+    best = first
+    least = float(1.0e30)
+    for slot in range(first, last):
+        distance = _center_distance(triangles, cells.items[slot], center)
+        if distance < least:
+            least = distance
+            best = slot
+    front = cells.items[first]
+    cells.items[first] = cells.items[best]
+    cells.items[best] = front
+
+
 @wp.kernel(enable_backward=False)
 def fill_cells(offset: int, triangles: WallTriangles, parent: GridCells, cells: GridCells, nearest: wp.array[float]):
     """Write each cell's list."""
@@ -67,6 +82,7 @@ def fill_cells(offset: int, triangles: WallTriangles, parent: GridCells, cells: 
         if _center_distance(triangles, parent.items[item], center) <= reach:
             cells.items[slot] = parent.items[item]
             slot += 1
+    _put_nearest_first(triangles, cells, cells.first[cell], slot, center)
 
 
 @wp.func
@@ -207,4 +223,5 @@ def fill_merged(
                     cells.items[slot] = t
                     slot += 1
             cells.last[cell] = slot
+            _put_nearest_first(triangles, cells, cells.first[cell], slot, center)
             nearest[cell] = reach.nearest

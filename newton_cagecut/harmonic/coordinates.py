@@ -26,13 +26,19 @@ from .walker import Walker
 class HarmonicCoordinates:
     """Harmonic coordinates of points with respect to a cage.
 
+    Weights are finite everywhere and sum to 1; but with correction "none" they reproduce the point to rounding. Points
+    on the boundary, on edges and vertices too, have the boundary's weights. So do points that lie outside by no more
+    than ``cage.length_tolerance``: those of the nearest place on it, extended linearly, some a little below 0. Points
+    farther outside, in a cavity or in an obstacle are refused. A point exactly on a cut counts for the side that
+    rounding puts it on; ``point_keys`` says which one is meant.
+
     Args:
         cage: The cage, or a ``Domain`` that other coordinates hold already and that is to be shared.
-        points: Rest positions inside the cage [m], shape (point_count, 3).
+        points: Rest positions inside the cage [m], shape (point_count, dimension).
         walks: Walks a point. The standard error falls as the root of it.
         seed: Seed of all walks. The same seed on the same walls gives the same weights, bit for bit.
         gradients: Whether to estimate the weights' gradients: for all points, or those of a mask, shape (point_count,).
-        cuttable: Whether to keep the walk cache that updates need (64 bytes a walk).
+        cuttable: Whether to keep the walk cache that updates need (by default 64 bytes a walk, 32 in the plane).
         device: Where to walk; Warp's current device by default.
         correction: "harmonic" (control variates), "affine" (paper, equation 5) or "none" (plain means).
         bounds: Bounding volume of a walk: "dop18", "dop26", "aabb" or "sphere". Smaller ones send more walks to be
@@ -82,7 +88,7 @@ class HarmonicCoordinates:
         self._cage = self.domain.cage
         points = checked_points(points, self.domain.dimension)
         keys = checked_keys(point_keys, len(points), len(self._cage.walls))
-        check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
+        outside = check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
         self._walker = Walker(
             self.domain,
             options,
@@ -91,7 +97,7 @@ class HarmonicCoordinates:
             gradient_mask=np.broadcast_to(np.asarray(gradients, dtype=bool), len(points)),
             cuttable=cuttable,
         )
-        self._walker.place(np.arange(len(points)), points, keys)
+        self._walker.place(np.arange(len(points)), points, keys, outside=outside)
         self._walker.run_all(self._new_stats(), progress=progress)
 
     @property
@@ -121,7 +127,7 @@ class HarmonicCoordinates:
 
     @property
     def gradients(self) -> np.ndarray:
-        """The weights' gradients [1/m] of the points that have them, shape (gradient_count, cage.vertex_count, 3)."""
+        """The weights' gradients [1/m] of points that have them, shape (gradient_count, vertex_count, dimension)."""
         return self._walker.gradients.numpy()[:, : self.cage.vertex_count, : self.domain.dimension].copy()
 
     @property
@@ -282,7 +288,7 @@ class HarmonicCoordinates:
 
         Args:
             indices: Points to set, shape (n,); those beyond the count continue it without gaps.
-            points: Rest positions [m], shape (n, 3).
+            points: Rest positions [m], shape (n, dimension).
             point_keys: Key 2 * wall + side for points on a wall, else -1, shape (n,).
 
         Raises:
@@ -297,8 +303,8 @@ class HarmonicCoordinates:
             raise ValueError(f"indices: there are {self.point_count} points; new ones must follow without gaps")
         keys = checked_keys(point_keys, len(points), len(self.domain.cage.walls))
         walker.require_points(int(indices.max(initial=-1)) + 1)
-        check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
-        walker.place(indices, points, keys)
+        outside = check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
+        walker.place(indices, points, keys, outside=outside)
         stats = self._new_stats()
         stats.rewalked = len(indices) * self.walks
         walker.run_points(indices, stats)
@@ -329,7 +335,7 @@ class HarmonicCoordinates:
         """Weights of points on the cage's walls, on the faces as they are.
 
         Args:
-            points: Rest positions on the walls [m], shape (n, 3).
+            points: Rest positions on the walls [m], shape (n, dimension).
             point_keys: Key 2 * wall + side of the side that each lies on, shape (n,).
             walks: Walks a point, for faces that need nested walks.
 
@@ -347,7 +353,7 @@ class HarmonicCoordinates:
         """Weights of further points in the cage as it is, which are not kept.
 
         Args:
-            points: Rest positions [m], shape (n, 3).
+            points: Rest positions [m], shape (n, dimension).
             point_keys: Key 2 * wall + side for points on a wall, else -1, shape (n,).
             walks: Walks a point.
 

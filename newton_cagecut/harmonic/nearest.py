@@ -12,8 +12,8 @@ from .walls import WallTriangles, closest_point, inward_distances, plane_distanc
 
 wp.set_module_options({"enable_backward": False})
 
-_TIE = wp.constant(1.00001)
-_TINY = wp.constant(1.0e-12)
+_ROUNDING = wp.constant(2.0e-6)
+"""More than the distances by which triangles are rejected, and the distance itself, are rounded off."""
 
 ALL_GATES = wp.constant(wp.uint32(0xFFFFFFFF))
 """Gates passed by who ignores them all."""
@@ -21,34 +21,48 @@ ALL_GATES = wp.constant(wp.uint32(0xFFFFFFFF))
 
 @wp.struct
 class Nearest:
-    """The wall triangle nearest to a point: squared distance, triangle, closest point."""
+    """The wall triangle nearest to a point: squared distance, triangle, closest point.
+
+    ``reach`` is a squared distance beyond which no triangle can be nearer, whatever is rounded.
+    """
 
     distance_squared: float
+    reach: float
     triangle: int
     point: wp.vec3
+
+
+@wp.func
+def nearest_at(triangle: int, x: wp.vec3, point: wp.vec3) -> Nearest:
+    """A triangle as the nearest, by its closest point."""
+    nearest = Nearest()
+    nearest.distance_squared = wp.length_sq(x - point)
+    distance = wp.sqrt(nearest.distance_squared) + _ROUNDING
+    nearest.reach = distance * distance
+    nearest.triangle = triangle
+    nearest.point = point
+    return nearest
 
 
 @wp.func
 def nearer(triangles: WallTriangles, t: int, x: wp.vec3, best: Nearest) -> Nearest:
     """Keep the nearer of ``best`` and triangle ``t``; on a tie the lower index.
 
-    The distance from the plane, then the one across the edges, reject most triangles first, with a margin. Triangles
-    are offered in ascending order everywhere, so a list that leaves far ones out gives the same result, bit for bit.
+    The distance from the plane, then the one across the edges, reject most triangles first, with a margin. So the
+    result is the least pair of squared distance and index, in whatever order triangles are offered, and a list that
+    leaves far ones out gives the same, bit for bit.
     """
-    reach = best.distance_squared * _TIE + _TINY
     off = plane_distance(triangles, t, x)
-    if off * off > reach:
+    if off * off > best.reach:
         return best
     inward = inward_distances(triangles, t, x)
     outside = wp.min(wp.min(inward), 0.0)
-    if off * off + outside * outside > reach:
+    if off * off + outside * outside > best.reach:
         return best
     point = closest_point(triangles, t, x, off, inward)
     distance_squared = wp.length_sq(x - point)
     if distance_squared < best.distance_squared or (distance_squared == best.distance_squared and t < best.triangle):
-        best.distance_squared = distance_squared
-        best.triangle = t
-        best.point = point
+        best = nearest_at(t, x, point)
     return best
 
 
@@ -57,6 +71,7 @@ def nothing_yet() -> Nearest:
     """The nearest wall before any was looked at."""
     nearest = Nearest()
     nearest.distance_squared = 1.0e30
+    nearest.reach = 1.0e30
     return nearest
 
 

@@ -20,8 +20,9 @@ class QueryPoints:
     """Points whose coordinates are wanted, shape (point_capacity,) each.
 
     ``position`` is in the unit frame. ``key`` is 2 * wall + side for a point on a wall, whose walks end where they
-    start, else INSIDE or REMOVED. ``piece`` is that of the cage, -1 on a wall. ``gradient_row`` is the point's
-    row among the gradients, -1 without. ``first_radius`` is the distance to the walls, measured by the first walk.
+    start, else INSIDE or REMOVED. ``piece`` is that of the cage, -1 on a wall or outside; a point outside is one
+    within the cage's tolerance, whose walks end at once, where they are nearest. ``gradient_row`` is the point's row
+    among the gradients, -1 without. ``first_radius`` is the distance to the walls, measured by the first walk.
     """
 
     position: wp.array[wp.vec3]

@@ -18,7 +18,7 @@ import warp as wp
 from .bounds_kind import BoundsKind
 from .cells import GridCells
 from .landing import CAPPED, PASSED, landing_type, point_functions
-from .nearest import ALL_GATES, make_nearest, nothing_yet
+from .nearest import ALL_GATES, make_nearest, nearest_at, nothing_yet
 from .points import QueryPoints
 from .random import GATE_STREAM, make_direction
 from .walls import WallTriangles, closest_point_on_triangle
@@ -119,6 +119,7 @@ def make_walk_kernel(
             return
         nearest = nothing_yet()
         step = int(0)
+        landed = bool(False)
         walking = bool(True)
         while walking:
             nearest = nearest_wall(triangles, cells, x, nearest, passed)
@@ -140,8 +141,11 @@ def make_walk_kernel(
                     if points.first_radius[point] != radius:
                         touched[point] = wp.uint8(1)
                 points.first_radius[point] = radius
-            # A point inside the shell still takes its first step, so that its weights reproduce it exactly.
+            # A point inside the shell still takes its first step, so that its weights reproduce it exactly; one that
+            # lies outside, within the cage's tolerance, takes none, which could lead around the cage.
             landed = radius < wp.where(at_start, ON_WALL, epsilon)
+            if at_start and passed == wp.uint32(0) and points.piece[point] < 0:
+                landed = True
             if landed and gate >= 0:
                 if wp.static(gated):
                     x = nearest.point
@@ -158,13 +162,13 @@ def make_walk_kernel(
                 x += radius * direction(stream, wp.uint32(point), number, wp.uint32(step))
                 step += 1
                 # Search from the wall that was nearest before: most others are then rejected at once.
-                nearest.point = closest_point_on_triangle(triangles, nearest.triangle, x)
-                nearest.distance_squared = wp.length_sq(x - nearest.point)
+                hint = nearest.triangle
+                nearest = nearest_at(hint, x, closest_point_on_triangle(triangles, hint, x))
         if wp.static(gated):
             if triangles.rows[nearest.triangle].gate >= 0:  # a capped walk lands on a wall all the same
                 nearest = nearest_wall(triangles, cells, x, nothing_yet(), ALL_GATES)
         key = landing_key(triangles, nearest.triangle, x)
-        if wp.sqrt(nearest.distance_squared) >= epsilon:
+        if not landed:
             key = key | CAPPED
         if stream != seed:
             key = key | PASSED

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 import warp as wp
 
-from ..cage import CageEdit
+from ..cage import CageEdit, boundary_distances
 from .bounds import make_bounds
 from .compact import count_capped
 from .domain import Domain
@@ -85,6 +85,7 @@ class Walker:
             return
         inner = np.flatnonzero(self._keys == INSIDE)
         covered = inner[~edit.cage.contains(self._rest[inner])]
+        covered = covered[boundary_distances(edit.before, self._rest[covered]) > edit.before.length_tolerance]
         if len(covered):
             raise ValueError(
                 f"the obstacle covers {len(covered)} of {self.point_count} points, such as point {covered[0]} at "
@@ -141,8 +142,15 @@ class Walker:
         walks = self.options.walks
         return (indices[:, None] * walks + np.arange(walks)).reshape(-1).astype(np.int32)
 
-    def place(self, indices: np.ndarray, points: np.ndarray, keys: np.ndarray) -> None:
-        """Set points' rest positions [m] and keys; new points continue the count."""
+    def place(self, indices: np.ndarray, points: np.ndarray, keys: np.ndarray, *, outside: np.ndarray) -> None:
+        """Set points' rest positions [m] and keys; new points continue the count.
+
+        Args:
+            indices: Points to set, shape (n,).
+            points: Their rest positions [m], shape (n, dimension).
+            keys: Their keys, shape (n,).
+            outside: Which of the n lie outside of the cage, within its tolerance.
+        """
         self.point_count = max(self.point_count, int(indices.max(initial=-1)) + 1)
         self._rest[indices] = points
         _scatter(self.points.position, indices, self.domain.frame.to_space(points))
@@ -150,17 +158,19 @@ class Walker:
         pieces = np.full(len(indices), -1, np.int32)
         inner = keys < 0
         pieces[inner] = self.domain.pieces_of(points[inner])
+        pieces[outside] = -1
         _scatter(self.points.piece, indices, pieces)
 
     def group_points(self) -> None:
-        """Find the piece of every point that is not on a wall again."""
-        inner = np.flatnonzero(self._keys == INSIDE)
+        """Find the piece of every point again that is in one."""
+        inner = np.flatnonzero((self._keys == INSIDE) & (self.points.piece.numpy()[: self.point_count] >= 0))
         _scatter(self.points.piece, inner, self.domain.pieces_of(self._rest[inner]))
 
     def free_points(self, walls: np.ndarray) -> None:
         """Points on walls that have retired are inside from now on."""
         freed = np.flatnonzero(np.isin(self._keys // 2, walls))
-        self.place(freed, self._rest[freed], np.full(len(freed), INSIDE, dtype=np.int32))
+        keys = np.full(len(freed), INSIDE, dtype=np.int32)
+        self.place(freed, self._rest[freed], keys, outside=np.zeros(0, dtype=np.int64))
 
     def run_all(self, stats: UpdateStats, *, progress: Callable[[float], None] | None = None) -> None:
         """Walk, land and resolve every point, in batches where walks are not kept."""

@@ -1,0 +1,142 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+"""The benchmarks, with few walks: that they measure what they say, not how fast it is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from benchmarks import accuracy, locality, pictures, table1
+from benchmarks.progressive import edits, step_count
+from benchmarks.scenes import SCENES
+from newton_cagecut import HarmonicCoordinates
+
+PIECES = {"dude": 2, "starfish": 2, "key": 4, "octopus": 2, "jelly": 2, "sphere": 2}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_cuts_of_a_scene_go_through(name):
+    """Each cut takes 34 steps, is complete at the last, and leaves as many pieces as the scene is to have."""
+    scene = SCENES[name]
+    steps = list(edits(scene.cage, scene.blades))
+    assert step_count() == 34
+    assert len(steps) == 34 * len(scene.blades)
+    assert [edit.complete for edit in steps[33::34]] == [True] * len(scene.blades)
+    assert not any(edit.complete for edit in steps[:33])
+    assert steps[-1].cage.piece_count == PIECES[name]
+
+
+def test_hat_comes_off_whole():
+    """The cut of DUDE leaves every vertex above it in one piece and all others in the other."""
+    scene = SCENES["dude"]
+    *_, last = edits(scene.cage, scene.blades, 0.25)
+    above = scene.points[:, 2] > scene.blades[0].origin[2]
+    assert 0.2 < above.mean() < 0.4
+    inside = np.abs(last.cage.winding_numbers(scene.points).round()) > 0
+    assert len(np.unique(inside[above], axis=0)) == len(np.unique(inside[~above], axis=0)) == 1
+
+
+def test_octopus_loses_the_end_of_one_arm_only():
+    """What comes off is a small part of the cage."""
+    scene = SCENES["octopus"]
+    *_, last = edits(scene.cage, scene.blades, 0.5)
+    assert last.cage.piece_volumes.min() < 0.01 * scene.cage.volume
+
+
+def test_table_has_our_row_and_the_papers(capsys, tmp_path):
+    """A run measures every step of every cut and three recomputes, and writes both rows as Markdown."""
+    file = tmp_path / "table.md"
+    (measured,) = table1.main(["--scene", "jelly", "--walks", "4", "--device", "cpu", "--markdown", str(file)])
+    assert (len(measured.steps), len(measured.recomputes), measured.point_count) == (34, 3, 2210)
+    assert measured.update_ms == pytest.approx(sum(measured.mean_ms(part) for part in table1.PARTS))
+    assert measured.memory["landings"] + measured.memory["bounds"] <= 64 * measured.walk_count
+    assert "bit for bit" in capsys.readouterr().out
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in file.read_text().splitlines()[2:]]
+    assert [row[0] for row in rows] == ["scene", "---", "jelly", "(paper)"]
+    assert {len(row) for row in rows} == {len(table1.HEAD)}
+    assert rows[3][-3:] == ["4.2", "115", "520"]
+
+
+def test_quadrature_points_have_gradients_besides():
+    """With gradients there are about 600 points more."""
+    measured = table1.measure(SCENES["jelly"], 2, gradients=True, progress=False, device="cpu")
+    assert 500 < measured.point_count - len(SCENES["jelly"].points) < 700
+    assert measured.memory["gradients"] > 0
+
+
+def test_recompute_that_differs_is_refused():
+    """Weights that are not those of a recompute are told, not timed."""
+    coordinates = HarmonicCoordinates(SCENES["sphere"].cage, SCENES["sphere"].points[:4], 4, device="cpu")
+    assert table1.recompute(coordinates) > 0.0
+    coordinates.weights_array.zero_()
+    with pytest.raises(ValueError, match="other weights"):
+        table1.recompute(coordinates)
+
+
+def test_errors_are_lower_with_control_variates():
+    """Plain Monte Carlo gains 1 over itself; the harmonic correction more, on weights and on gradients."""
+    scene = SCENES["sphere"]
+    points = accuracy.spread(0.8 * scene.points, 30)
+    for gradients in (False, True):
+        errors = accuracy.measure(
+            scene.cage, points, 64, gradients=gradients, runs=2, long_walks=2048, quads="mean_value", device="cpu"
+        )
+        assert errors.gain("none") == 1.0
+        assert errors.gain("harmonic") > 2.0
+        assert set(errors.group) == set(range(10))
+        assert errors.reference.sum() < 0.2 * errors.correction["harmonic"].sum()
+
+
+def test_errors_are_grouped_from_the_walls_inward():
+    """Points of the first tenth are nearer to the walls than those of the last."""
+    scene = SCENES["sphere"]
+    points = scene.points[:40] * np.linspace(0.1, 1.0, 40)[:, None]
+    errors = accuracy.measure(scene.cage, points, 8, gradients=False, runs=2, long_walks=8, device="cpu")
+    radius = np.linalg.norm(points, axis=1)
+    assert radius[errors.group == 0].min() > radius[errors.group == 9].max()
+
+
+def test_error_of_the_reference_is_taken_off():
+    """Where runs and long runs have equally many walks, half of the raw difference is the reference's own, and goes."""
+    scene = SCENES["jelly"]
+    points = accuracy.spread(0.7 * scene.points + (0.0, 0.0, 0.06), 60)
+    fair = accuracy.measure(scene.cage, points, 64, gradients=False, runs=4, long_walks=1024, device="cpu")
+    poor = accuracy.measure(scene.cage, points, 64, gradients=False, runs=4, long_walks=64, device="cpu")
+    assert poor.reference.sum() > 5.0 * fair.reference.sum()
+    assert poor.correction["none"].sum() == pytest.approx(fair.correction["none"].sum(), rel=0.15)
+
+
+def test_flagged_walks_hold_the_changed_ones():
+    """No step changes more walks than it flagged; some were flagged in vain."""
+    scene = SCENES["jelly"]
+    found = locality.follow(scene.cage, scene.points, scene.blades[0], 4, "jelly", device="cpu")
+    assert len(found.flagged) == 34
+    assert all(changed <= flagged for changed, flagged in zip(found.changed, found.flagged))
+    assert found.in_vain > 0.0
+    assert max(found.changed) <= found.touched.mean() <= 1.0
+
+
+def test_histogram_of_locality_counts_every_vertex():
+    """The bins, with those of no changed walk, hold all vertices."""
+    np.testing.assert_allclose(locality.histogram(np.array([0.0, 0.005, 0.02, 1.0])), [25, 25, 25, 0, 0, 25])
+
+
+def test_figures_are_plotted(tmp_path):
+    """Both figures go into one file."""
+    pytest.importorskip("matplotlib")
+    flagged = locality.Flagged([0.2, 0.1], [0.1, 0.1], np.zeros(4, dtype=bool))
+    found = {(cut, kind): flagged for cut in locality.DIRECTIONS for kind in ("dop18", "aabb")}
+    shares = {place: np.array([0.0, 0.02, 0.3]) for place in locality.PLACES}
+    locality.plot(shares, found, tmp_path / "locality.png")
+    assert np.array(Image.open(tmp_path / "locality.png")).std() > 10.0
+
+
+def test_scene_is_drawn_with_its_cage_and_cut(tmp_path):
+    """The picture shows the skin, the dark cage and the blue cut."""
+    pictures.draw(SCENES["jelly"], tmp_path / "jelly.png", (160, 120))
+    red, green, blue = np.array(Image.open(tmp_path / "jelly.png"), dtype=int).reshape(-1, 3).T
+    assert np.count_nonzero((red > 180) & (blue < 100)) > 500
+    assert np.count_nonzero((blue > red + 80) & (green > red)) > 50
+    assert np.count_nonzero(np.maximum(red, blue) < 60) > 100
