@@ -27,7 +27,7 @@ def fill(
     spacing: float,
     *,
     fixed: np.ndarray,
-    iterations: int = 80,
+    iterations: int = 40,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return points ``(n, 2)`` and counterclockwise triangles ``(m, 3)`` that fill ``field < 0``.
 

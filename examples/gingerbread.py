@@ -26,7 +26,7 @@ HANDS = (10, 20)  # cage vertices that are held
 PINS = {"left_pin": (-0.468, 0.0, HEIGHT + 0.263), "right_pin": (0.468, 0.0, HEIGHT + 0.263)}  # [m], only to look at
 PIN_RADIUS, PIN_HALF = 0.016, 0.03  # [m]
 FALL_FRAMES = 20  # after which a piece that has come off is down
-CAGE = read_cage(ASSETS / "gingerbread_cage.usda")
+CAGE, ICING = read_cage(ASSETS / "gingerbread_cage.usda"), icing()
 
 
 def bite(center: tuple[float, float], radius: float, start: float, end: float, count: int = 12) -> np.ndarray:
@@ -85,7 +85,7 @@ class Example(CutScene):
         surface, painted = self._painted
         if surface is not body.surface:
             surface = body.surface
-            painted = icing().contains(surface.points[surface.triangles].mean(axis=1))
+            painted = ICING.contains(surface.points[surface.triangles].mean(axis=1))
             self._painted = (surface, painted)
         return painted
 

@@ -7,42 +7,52 @@ from __future__ import annotations
 
 import newton
 import numpy as np
+import pytest
+import warp as wp
 
 import newton_cagecut as cagecut
 from cage_shapes import box
-from surface_shapes import sphere
+from plane_shapes import square
+from surface_shapes import disk, sphere
 
 SIZE = 1.0
-"""Side of the box cage [m]."""
+"""Side of the cages [m]."""
+UPRIGHT = wp.quat_from_axis_angle(wp.vec3(1.0, 0.0, 0.0), 0.5 * np.pi)
+"""Turns a plane body upright: its second axis points along the world's third."""
+
+both_dimensions = pytest.mark.parametrize("dimension", [2, 3])
 
 
-def ball() -> cagecut.Surface:
-    """A ball inside the box cage."""
-    return sphere(level=2, radius=0.4)
+def ball(dimension: int = 3) -> cagecut.Surface:
+    """A ball inside the box cage, or a disk in the square one."""
+    return sphere(level=2, radius=0.4) if dimension == 3 else disk(radius=0.4)
 
 
-def box_cage() -> cagecut.Cage:
-    """A box of side 1 m."""
-    return box()
+def box_cage(dimension: int = 3) -> cagecut.Cage:
+    """A box of side 1 m, or a square."""
+    return box() if dimension == 3 else square()
 
 
-def corners(axis: int, side: float) -> np.ndarray:
-    """Vertices of the box cage on one of its sides."""
-    return np.flatnonzero(box_cage().vertices[:, axis] == side)
+def corners(axis: int, side: float, dimension: int = 3) -> np.ndarray:
+    """Vertices of the cage on one of its sides; axis -1 points up, in the world too."""
+    return np.flatnonzero(box_cage(dimension).vertices[:, axis] == side)
 
 
-def make_solver(*, gravity: float = 0.0, builder: newton.ModelBuilder | None = None, **options):
-    """Model, solver and two states of a ball in a box.
+def make_solver(*, gravity: float = 0.0, builder: newton.ModelBuilder | None = None, dimension: int = 3, **options):
+    """Model, solver and two states of a ball in a box, or of a disk in a square that stands upright.
 
     Args:
         gravity: Gravity along z [m/s^2].
         builder: A builder with more in it.
+        dimension: Dimension of the body.
         options: Options of ``add_cage_body``.
     """
     builder = builder or newton.ModelBuilder(gravity=(0.0, 0.0, gravity))
     cagecut.SolverCageCut.register_custom_attributes(builder)
     defaults = {"walks": 32, "quadrature": 60, "material": cagecut.Material(young=1.0e4, damping=0.02)}
-    cagecut.add_cage_body(builder, box_cage(), ball(), **{**defaults, **options})
+    if dimension == 2:
+        defaults["xform"] = wp.transform((0.0, 0.0, 0.0), UPRIGHT)
+    cagecut.add_cage_body(builder, box_cage(dimension), ball(dimension), **{**defaults, **options})
     model = builder.finalize(device="cpu")
     return model, cagecut.SolverCageCut(model), model.state(), model.state()
 
@@ -63,8 +73,10 @@ def vertex_rows(solver: cagecut.SolverCageCut, state: newton.State, field: str =
     return getattr(state, field)[body.vertices].numpy()[: body.cage.vertex_count].astype(np.float64)
 
 
-def slanted_blade() -> cagecut.Blade:
-    """A blade that crosses the box at an angle."""
+def slanted_blade(dimension: int = 3) -> cagecut.Blade:
+    """A blade that crosses the box, or the square, at an angle."""
+    if dimension == 2:
+        return cagecut.Blade([0.45, 0.5], [0.2, -1.0])
     return cagecut.Blade([0.45, 0.5, 0.5], [0.1, 1.0, 0.15], [0.2, -0.1, -1.0])
 
 

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
-from assets import bunny
+from assets import bunny, gingerbread
 from benchmarks.paper import TABLE_1
-from newton_cagecut.cage import Cage
+from newton_cagecut.cage import Cage, boundary_distances
 from newton_cagecut.usd import MeshData, read_cage, read_mesh, read_surface
 
 ASSETS = Path(__file__).parent.parent / "assets"
@@ -152,6 +153,42 @@ def test_mesh_is_a_surface_to_embed(name):
     assert surface.closed
     np.testing.assert_array_equal(surface.points, stored_mesh(name).points)
     np.testing.assert_array_equal(surface.triangles, stored_mesh(name).triangles)
+
+
+def test_gingerbread_man_fills_his_cage():
+    """One flat part of even triangles without a hole, at least 7 mm inside of a cage of 30 segments, 1 m tall."""
+    surface, cage = read_surface(ASSETS / "gingerbread.usdc", flat=True), read_cage(ASSETS / "gingerbread_cage.usda")
+    mesh = surface.mesh
+    assert (surface.dimension, mesh.component_count, len(np.unique(surface.triangles))) == (2, 1, surface.point_count)
+    assert surface.point_count - mesh.edge_count + surface.triangle_count == 1
+    surface.refuse_branches()
+    assert (cage.dimension, cage.face_count, cage.component_count) == (2, 30, 1)
+    assert cage.contains(surface.points).all()
+    assert boundary_distances(cage, surface.points).min() > 0.007
+    lengths = np.linalg.norm(np.diff(surface.points[mesh.edges], axis=1)[:, 0], axis=1)
+    assert lengths.max() < 2.5 * gingerbread.SPACING
+    assert lengths.min() > 0.25 * gingerbread.SPACING
+
+
+def test_icing_has_edges_along_its_borders():
+    """Every segment around the icing is an edge of the gingerbread man, so that no triangle is half covered."""
+    surface, icing = read_surface(ASSETS / "gingerbread.usdc", flat=True), gingerbread.icing()
+    distance, place = cKDTree(surface.points).query(icing.vertices)
+    assert distance.max() < 1e-6
+    edges = set(map(tuple, surface.mesh.edges.tolist()))
+    assert all(tuple(edge) in edges for edge in np.sort(place[np.array(icing.faces)], axis=1).tolist())
+    assert icing.component_count == 10
+
+
+def test_stored_gingerbread_man_is_what_his_script_makes():
+    """Running the script again gives the stored mesh and cage."""
+    stored = read_surface(ASSETS / "gingerbread.usdc", flat=True)
+    points, triangles = gingerbread.gingerbread_mesh()
+    np.testing.assert_allclose(stored.points, points, atol=1e-5)
+    np.testing.assert_array_equal(stored.triangles, triangles)
+    cage, made = read_cage(ASSETS / "gingerbread_cage.usda"), gingerbread.gingerbread_cage()
+    np.testing.assert_allclose(cage.vertices, made.vertices, atol=1e-6)
+    assert cage.faces == made.faces
 
 
 def test_stored_assets_are_small():

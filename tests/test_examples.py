@@ -7,9 +7,9 @@ import pytest
 from PIL import Image
 
 from examples import __main__ as dispatcher
-from examples.cutting import PlannedCut, frames_of
+from examples.cutting import PlannedCut, along, frames_of
 from examples.scene import CutScene
-from newton_cagecut import Blade
+from newton_cagecut import Blade, Cage
 from newton_cagecut.usd import validate_animation
 
 FAST = ["--viewer", "null", "--quiet", "--test", "--walks", "16", "--pace", "8"]
@@ -48,6 +48,16 @@ def test_bunny_is_cut_twice(monkeypatch):
     assert (scene.schedule.current, scene.solver.bodies[0].cage.component_count) == (2, 2)
 
 
+def test_gingerbread_man_is_cut_down(monkeypatch, tmp_path):
+    """The flat gingerbread man passes his own test after a bent cut, a slit and two cuts that free him."""
+    usd = tmp_path / "gingerbread.usd"
+    scene = run(monkeypatch, "gingerbread", *FAST, "--num-frames", "64", "--usd", str(usd))
+    body = scene.solver.bodies[0]
+    assert (scene.schedule.current, body.cage.piece_count, body.surface.mesh.component_count) == (4, 4, 4)
+    assert scene.frame - scene._parted_at >= 20
+    assert validate_animation(usd) == []
+
+
 def test_dispatcher_lists_the_scenes(monkeypatch, capsys):
     """Without a name, each scene is listed with one line."""
     run(monkeypatch)
@@ -67,3 +77,12 @@ def test_frames_of_a_plan_are_its_waits_and_its_steps():
     blade = Blade((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
     plan = [PlannedCut(name="a", blade=blade, wait=5), PlannedCut(name="b", blade=blade, until=0.5)]
     assert frames_of(plan) == 5 + 34 + 17
+
+
+def test_cut_along_a_line_with_corners():
+    """The blade starts at the line's first corner and turns at the others, at depths from where it meets the cage."""
+    cage = Cage([[0, 0], [1, 0], [1, 1], [0, 1]], [(0, 1), (1, 2), (2, 3), (3, 0)])
+    cut = along(cage, np.array([[-0.2, 0.5], [0.3, 0.5], [0.6, 0.9], [0.6, 2.0]]), name="bow")
+    assert (cut.blade.window, cut.next_turn(0.31)) == ((-np.inf, np.inf, 0.0), pytest.approx(0.8, abs=1e-5))
+    np.testing.assert_allclose([depth for depth, _ in cut.turns], [0.3, 0.8], atol=1e-5)
+    np.testing.assert_allclose([turn for _, turn in cut.turns], [[0.3, 0.4], [0.0, 1.1]], atol=1e-12)

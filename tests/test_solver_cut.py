@@ -14,6 +14,7 @@ import newton_cagecut as cagecut
 from solver_scenes import (
     assert_same,
     ball,
+    both_dimensions,
     box_cage,
     corners,
     everything,
@@ -22,70 +23,79 @@ from solver_scenes import (
     slanted_blade,
     vertex_rows,
 )
+from surface_shapes import check_surface
 
 
-def test_cut_keeps_the_deformed_shape():
+@both_dimensions
+def test_cut_keeps_the_deformed_shape(dimension: int):
     """New cage vertices lie on the deformed cage, and the surface's old points stay nearly where they were."""
-    _, solver, *states = make_solver(gravity=-9.81, fixed=corners(2, 1.0), walks=256)
+    top, count = corners(-1, 1.0, dimension), box_cage(dimension).vertex_count
+    _, solver, *states = make_solver(gravity=-9.81, fixed=top, walks=256, dimension=dimension)
     states = run(solver, states, 20)
     before, _ = solver.surface(states[0])
-    bottom = vertex_rows(solver, states[0])[corners(2, 0.0), 2].mean()
+    bottom = vertex_rows(solver, states[0])[corners(-1, 0.0, dimension), 2].mean()
     assert bottom < -0.05
-    cut = solver.begin_cut(0, slanted_blade())
+    cut = solver.begin_cut(0, slanted_blade(dimension))
     solver.advance_cut(cut, 0.3 * cut.length, states=states)
     after, _ = solver.surface(states[0])
     assert np.abs(after[: len(before)] - before).max() < 0.02
-    new = vertex_rows(solver, states[0])[8:]
-    old = vertex_rows(solver, states[0])[:8]
+    new = vertex_rows(solver, states[0])[count:]
+    old = vertex_rows(solver, states[0])[:count]
+    assert len(new) > 2
     assert (new >= old.min(axis=0) - 1e-6).all()
     assert (new <= old.max(axis=0) + 1e-6).all()
 
 
-def test_both_states_are_carried_over():
+@both_dimensions
+def test_both_states_are_carried_over(dimension: int):
     """Positions and velocities of new vertices are written in every state that is passed."""
-    _, solver, *states = make_solver(gravity=-9.81)
+    _, solver, *states = make_solver(gravity=-9.81, dimension=dimension)
     states = run(solver, states, 5)
-    cut = solver.begin_cut(0, slanted_blade())
+    cut, count = solver.begin_cut(0, slanted_blade(dimension)), box_cage(dimension).vertex_count
     report = solver.advance_cut(cut, 0.4, states=states)
     assert report.vertices_created > 0
     for state in states:
         velocities = vertex_rows(solver, state, "particle_qd")
-        np.testing.assert_allclose(velocities[8:], np.broadcast_to(velocities[0], velocities[8:].shape), atol=1.0e-4)
+        expected = np.broadcast_to(velocities[0], velocities[count:].shape)
+        np.testing.assert_allclose(velocities[count:], expected, atol=1.0e-4)
 
 
-def test_rigid_motion_gains_no_energy():
+@both_dimensions
+def test_rigid_motion_gains_no_energy(dimension: int):
     """A cut of a body that falls without deforming injects almost no energy."""
-    _, solver, *states = make_solver(gravity=-9.81)
+    _, solver, *states = make_solver(gravity=-9.81, dimension=dimension)
     states = run(solver, states, 20)
-    cut = solver.begin_cut(0, slanted_blade())
+    cut = solver.begin_cut(0, slanted_blade(dimension))
     report = solver.advance_cut(cut, 0.5 * cut.length, states=states)
     assert report.energy_before > 100.0
     assert abs(report.energy_injected) < 1.0e-4 * report.energy_before
 
 
-def test_surface_is_cut_and_stays_closed():
-    """The embedded surface is split and capped at every step, and its points follow the weights."""
-    _, solver, *states = make_solver()
-    cut = solver.begin_cut(0, slanted_blade())
-    volume = solver.bodies[0].surface.volume
+@both_dimensions
+def test_surface_is_cut_and_stays_whole(dimension: int):
+    """The embedded surface is split, in space capped, at every step, and its points follow the weights."""
+    _, solver, *states = make_solver(dimension=dimension)
+    cut, body = solver.begin_cut(0, slanted_blade(dimension)), solver.bodies[0]
+    volume = body.surface.volume
     while not cut.complete:
         report = solver.advance_cut(cut, 0.2 * cut.length, states=states)
-        surface = solver.bodies[0].surface
+        surface = body.surface
         points, triangles = solver.surface(states[0], 0)
-        assert surface.closed
-        assert surface.volume == pytest.approx(volume, rel=1.0e-9)
+        check_surface(surface, volume)
         assert len(points) == surface.point_count
         assert triangles.max() < len(points)
-        np.testing.assert_allclose(points, surface.points, atol=1.0e-5)
+        np.testing.assert_allclose(points, body.to_world(surface.points), atol=1.0e-5)
     assert report.separated
-    assert report.components == 2
-    assert (np.asarray(surface.triangle_cap) >= 0).any()
+    assert report.components == surface.mesh.component_count == 2
+    assert (surface.triangle_cap >= 0).any() == (dimension == 3)
 
 
-def test_pieces_weigh_what_their_volumes_say():
+@both_dimensions
+def test_pieces_weigh_what_their_volumes_say(dimension: int):
     """Quadrature volumes are those of the pieces, and a thin slice gets quadrature points of its own."""
-    _, solver, *states = make_solver(material=cagecut.Material(density=700.0))
-    cut = solver.begin_cut(0, cagecut.Blade([0.5, 0.5, 0.96], [1.0, 0.0, 0.0], [0.0, 1.0, 0.01]))
+    _, solver, *states = make_solver(material=cagecut.Material(density=700.0), dimension=dimension)
+    vectors = ([0.5, 0.5, 0.96], [1.0, 0.0, 0.0], [0.0, 1.0, 0.01])
+    cut = solver.begin_cut(0, cagecut.Blade(*(vectors if dimension == 3 else ([0.5, 0.96], [1.0, 0.01]))))
     solver.advance_cut(cut, to=10.0, states=states)
     body = solver.bodies[0]
     cage = body.cage
@@ -95,19 +105,21 @@ def test_pieces_weigh_what_their_volumes_say():
 
 
 @pytest.mark.parametrize(
-    ("capacity", "culprit"),
+    ("dimension", "capacity", "culprit"),
     [
-        ({"vertices": 13}, "vertices"),
-        ({"surface_points": 170}, "surface_points"),
-        ({"surface_triangles": 330}, "surface_triangles"),
+        (3, {"vertices": 13}, "vertices"),
+        (3, {"surface_points": 170}, "surface_points"),
+        (3, {"surface_triangles": 330}, "surface_triangles"),
+        (2, {"vertices": 7}, "vertices"),
+        (2, {"surface_points": 205}, "surface_points"),
     ],
 )
-def test_cut_that_does_not_fit_changes_nothing(capacity: dict[str, int], culprit: str):
+def test_cut_that_does_not_fit_changes_nothing(dimension: int, capacity: dict[str, int], culprit: str):
     """An edit over capacity names what to raise and leaves model, states, cache and cut as they were."""
     room = {"vertices": 64, "surface_points": 1000, "surface_triangles": 4000, **capacity}
-    _, solver, *states = make_solver(capacity=cagecut.Capacity(**room), gravity=-9.81)
+    _, solver, *states = make_solver(capacity=cagecut.Capacity(**room), gravity=-9.81, dimension=dimension)
     states = run(solver, states, 3)
-    cut = solver.begin_cut(0, slanted_blade())
+    cut = solver.begin_cut(0, slanted_blade(dimension))
     solver.advance_cut(cut, to=0.05 * cut.length, states=states)
     before, depth = everything(solver, states), cut.depth
     with pytest.raises(ValueError, match=culprit):
@@ -129,17 +141,19 @@ def test_bad_advances_are_refused():
     assert_same(before, everything(solver, states))
 
 
-def test_cuts_go_on_side_by_side():
+@both_dimensions
+def test_cuts_go_on_side_by_side(dimension: int):
     """A cut goes on after another one has changed the body, and both complete."""
-    _, solver, *states = make_solver()
-    first = solver.begin_cut(0, slanted_blade())
-    second = solver.begin_cut(0, cagecut.Blade([0.5, 0.45, 0.5], [1.0, 0.1, 0.15], [0.0, 0.1, -1.0]))
+    _, solver, *states = make_solver(dimension=dimension)
+    first, volume = solver.begin_cut(0, slanted_blade(dimension)), solver.bodies[0].surface.volume
+    vectors = ([0.5, 0.45, 0.5], [1.0, 0.1, 0.15], [0.0, 0.1, -1.0])
+    second = solver.begin_cut(0, cagecut.Blade(*(vectors if dimension == 3 else ([0.5, 0.45], [1.0, 0.1]))))
     while not (first.complete and second.complete):
         for cut in (first, second):
             if not cut.complete:
                 report = solver.advance_cut(cut, 0.25 * cut.length, states=states)
     assert report.components == 4
-    assert solver.bodies[0].surface.closed
+    check_surface(solver.bodies[0].surface, volume)
 
 
 def test_blade_that_misses_changes_nothing():
@@ -236,18 +250,21 @@ def test_surface_is_logged_with_the_topology_of_now():
     assert len(calls["skin"][1]) + len(calls["caps"][1]) == 3 * surface.triangle_count
 
 
+@both_dimensions
 @pytest.mark.parametrize("share", [0.6, 1.0])
-def test_crossing_cuts_keep_surface_points_with_their_piece(share: float):
+def test_crossing_cuts_keep_surface_points_with_their_piece(share: float, dimension: int):
     """Where two cuts cross, every surface point gets its weights from the piece of cage that its own piece lies in."""
-    _, solver, *states = make_solver()
-    for origin, edge, until in (([0.503, 0, 0], [0, 1, 0], 1.0), ([0, 0.507, 0], [1, 0, 0], share)):
-        cut = solver.begin_cut(0, cagecut.Blade(origin, edge, [0, 0, -1]))
+    _, solver, *states = make_solver(dimension=dimension)
+    in_space = (([0.503, 0, 0], [0, 1, 0], [0, 0, -1]), ([0, 0.507, 0], [1, 0, 0], [0, 0, -1]))
+    blades = in_space if dimension == 3 else (([0.503, 0], [0, 1]), ([0, 0.507], [1, 0]))
+    for vectors, until in zip(blades, (1.0, share), strict=True):
+        cut = solver.begin_cut(0, cagecut.Blade(*vectors))
         for k in range(1, 6):
             solver.advance_cut(cut, to=until * cut.length * k / 5, states=states)
     body = solver.bodies[0]
     weights = body.coordinates.weights[body.surface_row :]
     pieces = body.cage.component_count
-    assert pieces == (2 if share < 1.0 else 4)
+    assert pieces == (4 if share == 1.0 else 3 if dimension == 2 else 2)
     shares = np.stack([weights[:, body.cage.vertex_component == k].sum(axis=1) for k in range(pieces)], axis=1)
     for piece in range(body.surface.mesh.component_count):
         rows = shares[body.surface.mesh.vertex_component == piece]

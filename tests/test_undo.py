@@ -4,20 +4,19 @@
 
 from __future__ import annotations
 
-import newton
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import newton_cagecut as cagecut
 from cage_shapes import box, random_blade
 from harmonic_shapes import MAKERS, UNITS
 from newton_cagecut.cage import Blade, Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
 from newton_cagecut.surface import SurfaceCut
 from plane_shapes import PLANES
-from surface_shapes import bumpy_sphere, sphere
+from solver_scenes import both_dimensions, make_solver
+from surface_shapes import bumpy_sphere
 
 BLADE = Blade([0.52, 0.5, 0.5], [0.1, 1.0, 0.05], [0.1, 0.0, -1.0])
 BLADES = {2: Blade([0.52, 0.5], [0.1, -1.0]), 3: BLADE}
@@ -147,15 +146,12 @@ def test_restore_refuses_other_coordinates():
         one.restore(two.snapshot())
 
 
-def test_restored_body_is_bit_identical():
+@both_dimensions
+def test_restored_body_is_bit_identical(dimension):
     """A body restored after pieces came off is what it was, array by array, and its cut goes on as it did."""
-    builder = newton.ModelBuilder(gravity=(0.0, 0.0, -9.81))
-    cagecut.SolverCageCut.register_custom_attributes(builder)
-    cagecut.add_cage_body(builder, box(), sphere(2, 0.4), walks=32, quadrature=60)
-    model = builder.finalize(device="cpu")
-    solver, state = cagecut.SolverCageCut(model), model.state()
+    model, solver, state, _ = make_solver(gravity=-9.81, dimension=dimension)
     body = solver.bodies[0]
-    cut = solver.begin_cut(0, BLADE)
+    cut = solver.begin_cut(0, BLADE if dimension == 3 else Blade([0.52, 0.5], [0.1, -1.0]))
     solver.advance_cut(cut, 0.4, states=(state,))
 
     def arrays() -> dict[str, np.ndarray]:
