@@ -8,7 +8,7 @@ import numpy as np
 import warp as wp
 
 from cage_shapes import SHAPES
-from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
+from newton_cagecut.cage import Blade, Cage, CageEdit, Cut, boundary_distances
 from newton_cagecut.harmonic import HarmonicCoordinates
 from plane_shapes import PLANES
 
@@ -32,12 +32,23 @@ def interior_points(cage: Cage, count: int, rng: np.random.Generator) -> np.ndar
     return points[:count]
 
 
+def points_inside(cage: Cage, count: int, seed: int) -> np.ndarray:
+    """Points inside a cage at some distance from its boundary, shape (count, dimension)."""
+    points = interior_points(cage, 20 * count, np.random.default_rng(seed))
+    return points[boundary_distances(cage, points) > 0.07 * cage.diameter][:count]
+
+
 def points_near_faces(cage: Cage, distance: float, rng: np.random.Generator) -> np.ndarray:
     """A point in front of every simplex of a cage, at a distance [m] inside, shape (simplex_count, dimension)."""
     corners = cage.vertices[cage.simplices]
     normals = np.array([wall.normal for wall in cage.walls])[cage.face_wall[cage.simplex_face]]
     share = rng.dirichlet(np.full(cage.dimension, 3.0), len(corners))
     return np.einsum("ti,tij->tj", share, corners) - distance * normals
+
+
+def small_obstacle(unit: Cage, middle: np.ndarray, size: float = 0.1) -> Cage:
+    """A unit square or box made smaller, about a point."""
+    return Cage(size * (unit.vertices - 0.5) + middle, unit.faces)
 
 
 def random_blade(rng: np.random.Generator, cage: Cage) -> Blade:

@@ -8,8 +8,17 @@ import numpy as np
 import pytest
 
 from cage_shapes import box, tetrahedron
-from harmonic_shapes import MAKERS, UNITS, assert_reproduces, assert_unbiased, copies, interior_points, multilinear
-from newton_cagecut.cage import Cage, boundary_distances
+from harmonic_shapes import (
+    MAKERS,
+    UNITS,
+    assert_reproduces,
+    assert_unbiased,
+    copies,
+    interior_points,
+    multilinear,
+    points_inside,
+)
+from newton_cagecut.cage import Cage
 from newton_cagecut.harmonic import HarmonicCoordinates
 from plane_reference import plane_reference
 from plane_shapes import outline
@@ -22,12 +31,6 @@ QUANTITIES = pytest.mark.parametrize("quantity", [0, 1], ids=["weights", "gradie
 def bake(cage: Cage, points: np.ndarray, walks: int, seed: int = 0, **options) -> HarmonicCoordinates:
     """Coordinates with gradients and harmonic faces."""
     return HarmonicCoordinates(cage, points, walks, seed, gradients=True, quads="harmonic", **options)
-
-
-def points_inside(cage: Cage, count: int, seed: int) -> np.ndarray:
-    """Points at some distance from the boundary."""
-    points = interior_points(cage, 20 * count, np.random.default_rng(seed))
-    return points[boundary_distances(cage, points) > 0.07 * cage.diameter][:count]
 
 
 def root_mean_square(values: np.ndarray) -> float:

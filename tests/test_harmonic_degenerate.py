@@ -14,6 +14,7 @@ from harmonic_shapes import (
     assert_reproduces,
     interior_points,
     points_near_faces,
+    small_obstacle,
     snapshot,
 )
 from newton_cagecut.cage import Blade, Cage, Cut
@@ -33,11 +34,6 @@ def assert_sound(coordinates: HarmonicCoordinates, points: np.ndarray) -> None:
     assert_reproduces(coordinates, points, gradients=False)
     assert np.abs(coordinates.weights).max() < 1.0 + 1e-5
     assert np.abs(coordinates.gradients).max() * coordinates.cage.diameter < 100.0
-
-
-def small_obstacle(cage: Cage) -> Cage:
-    """A unit cage of a tenth of the size, in the middle of another."""
-    return Cage(0.1 * (cage.vertices - 0.5) + 0.5, cage.faces)
 
 
 @NAMES
@@ -91,7 +87,7 @@ def test_farther_outside_is_refused(name):
 def test_cavities_and_obstacles_are_outside(name):
     """Points in a hole, a cavity or an obstacle are refused; those on its boundary and within the tolerance are not."""
     base = MAKERS[name]()
-    obstacle = small_obstacle(base)
+    obstacle = small_obstacle(base, np.full(base.dimension, 0.5))
     cage = base.insert(obstacle).cage
     beside = points_near_faces(obstacle, 0.5 * cage.length_tolerance, np.random.default_rng(4))
     points = np.concatenate([obstacle.vertices, beside])
@@ -129,7 +125,7 @@ def test_edits_of_cages_with_points_on_the_boundary(name):
     points = np.concatenate([cage.vertices, *(points_near_faces(cage, offset, rng) for offset in offsets)])
     coordinates = bake(cage, points)
     edits = [cage.move_face(1, 0.3)]
-    edits.append(edits[-1].cage.insert(small_obstacle(cage)))
+    edits.append(edits[-1].cage.insert(small_obstacle(cage, np.full(cage.dimension, 0.5))))
     cut = Cut(edits[-1].cage, Blade(np.full(cage.dimension, 0.45), *np.eye(cage.dimension)[:0:-1]))
     edits += [cut.advance(to=part * cut.length) for part in (0.4, 1.1)]
     for edit in edits:

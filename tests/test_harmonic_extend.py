@@ -20,6 +20,7 @@ from harmonic_shapes import (
     interior_points,
     multilinear,
     random_blade,
+    small_obstacle,
     snapshot,
 )
 from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
@@ -109,7 +110,7 @@ def test_obstacles(name):
     """An obstacle is felt at once, by walks again; blades go through it and the weights stay those of a recompute."""
     rng = np.random.default_rng(6)
     cage = MAKERS[name]()
-    obstacle = _obstacle(cage)
+    obstacle = small_obstacle(cage, np.array([0.425, 0.525, 0.525])[: cage.dimension], 0.25)
     points = interior_points(cage, 60, rng)
     points = points[~obstacle.contains(points)]
     coordinates = bake(cage, points)
@@ -135,7 +136,7 @@ def test_an_obstacle_covers_no_points(name):
     points = np.array([[0.2, 0.2, 0.2], [0.4, 0.5, 0.5], [0.8, 0.8, 0.8]])[:, : cage.dimension]
     coordinates = bake(cage, points)
     before = snapshot(coordinates)
-    edit = coordinates.cage.insert(_obstacle(cage))
+    edit = coordinates.cage.insert(small_obstacle(cage, np.array([0.425, 0.525, 0.525])[: cage.dimension], 0.25))
     with pytest.raises(ValueError, match=r"obstacle covers 1 of 3 points, such as point 1 at"):
         coordinates.update(edit)
     assert_identical(before, snapshot(coordinates))
@@ -178,7 +179,3 @@ def snapshot_without_gradients(coordinates: HarmonicCoordinates) -> dict[str, np
 def last_face(cage: Cage) -> int:
     """The face of a box or a rectangle that lies across the last axis at its end."""
     return int(np.argmax([wall.normal[-1] for wall in cage.walls]))
-
-
-def _obstacle(unit: Cage) -> Cage:
-    return Cage(0.25 * unit.vertices + [0.3, 0.4, 0.4][: unit.dimension], unit.faces)

@@ -14,6 +14,7 @@ from harmonic_shapes import (
     assert_reproduces,
     interior_points,
     middle_cut,
+    small_obstacle,
     snapshot,
 )
 from newton_cagecut.cage import Cage
@@ -37,11 +38,6 @@ def inside(cage) -> np.ndarray:
 def bake(cage: Cage, points: np.ndarray, **options) -> HarmonicCoordinates:
     """Coordinates with gradients."""
     return HarmonicCoordinates(cage, points, WALKS, **{"gradients": True, **options})
-
-
-def small_obstacle(cage: Cage, middle: np.ndarray) -> Cage:
-    """A unit cage of a tenth of the size about a point."""
-    return Cage(0.1 * (cage.vertices - 0.5) + middle, cage.faces)
 
 
 def per_point(coordinates: HarmonicCoordinates, count: int) -> dict[str, np.ndarray]:
