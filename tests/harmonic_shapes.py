@@ -122,11 +122,12 @@ def multilinear(cage: Cage, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 def copies(cage: Cage, points: np.ndarray, walks: int, count: int, **options) -> tuple[np.ndarray, ...]:
     """Independent weights, and gradients if asked for, copies x points x vertices: each point is there many times."""
     coordinates = HarmonicCoordinates(cage, np.repeat(points, count, axis=0), walks, cuttable=False, **options)
-    return tuple(
-        values.astype(np.float64).reshape(len(points), count, *values.shape[1:]).swapaxes(0, 1)
-        for values in (coordinates.weights, coordinates.gradients)
-        if len(values)
-    )
+    return tuple(by_copy(values, count) for values in (coordinates.weights, coordinates.gradients) if len(values))
+
+
+def by_copy(values: np.ndarray, count: int) -> np.ndarray:
+    """Values of points that are each there so many times in a row, in float64, copies x points x the rest."""
+    return values.astype(np.float64).reshape(-1, count, *values.shape[1:]).swapaxes(0, 1)
 
 
 def assert_within_errors(estimates: np.ndarray, exact: np.ndarray, *, own_error: np.ndarray | float = 0.0) -> None:

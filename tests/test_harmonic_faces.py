@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cage_shapes import box, hexagonal_prism, prism, tetrahedron
-from harmonic_shapes import interior_points, mean_value, middle_cut, side_vertices
+from cage_shapes import box, hexagonal_prism, prism
+from harmonic_shapes import MAKERS, UNITS, interior_points, mean_value, middle_cut, side_vertices
 from newton_cagecut.cage import Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
 
@@ -19,19 +19,19 @@ def bake(cage: Cage, **options) -> HarmonicCoordinates:
     return HarmonicCoordinates(cage, points, 64, gradients=True, **options)
 
 
-def cut_box(depth: float) -> tuple[HarmonicCoordinates, Cut]:
-    """A box cut from above to a depth; its top and bottom, first slit, then split, lie across the cut."""
-    cage = box()
+def cut_unit(depth: float, name: str = "box") -> tuple[HarmonicCoordinates, Cut]:
+    """A box or a square cut from above to a depth; its top and bottom lie across the cut and are split."""
+    cage = MAKERS[name]()
     coordinates, cut = bake(cage), middle_cut(cage)
     coordinates.update(cut.advance(to=depth))
     return coordinates, cut
 
 
 def points_on_face(cage: Cage, face: int, count: int, rng: np.random.Generator) -> np.ndarray:
-    """Uniform points of a face's triangles."""
-    triangles = cage.vertices[cage.triangles[cage.triangle_face == face]]
-    share = rng.dirichlet((1.0, 1.0, 1.0), count)
-    return np.einsum("nk,nki->ni", share, triangles[rng.integers(len(triangles), size=count)])
+    """Uniform points of a face's triangles, or of its segment."""
+    simplices = cage.vertices[cage.simplices[cage.simplex_face == face]]
+    share = rng.dirichlet(np.ones(cage.dimension), count)
+    return np.einsum("nk,nki->ni", share, simplices[rng.integers(len(simplices), size=count)])
 
 
 def face_keys(cage: Cage, face: int, count: int) -> np.ndarray:
@@ -45,15 +45,17 @@ def assert_interpolates(weights: np.ndarray, cage: Cage, points: np.ndarray) -> 
     np.testing.assert_allclose(weights @ cage.vertices, points, atol=1e-5 * cage.diameter)
 
 
-@pytest.mark.parametrize("face", range(4))
-def test_triangle_is_barycentric(face):
-    """On a triangle the weights are those that made the point."""
-    cage = tetrahedron()
-    share = np.random.default_rng(face).dirichlet((1.0, 1.0, 1.0), 20)
-    corners = list(cage.faces[face])
-    weights = bake(cage).boundary_weights(share @ cage.vertices[corners], face_keys(cage, face, 20), walks=4)
-    np.testing.assert_allclose(weights[:, corners], share, atol=1e-6)
-    assert np.all(np.delete(weights, corners, axis=1) == 0.0)
+@pytest.mark.parametrize("name", ["star", "tetrahedron"])
+def test_simplex_is_barycentric(name):
+    """On a triangle or a segment the weights are those that made the point."""
+    cage = MAKERS[name]()
+    coordinates = bake(cage)
+    for face, loop in enumerate(cage.faces):
+        share = np.random.default_rng(face).dirichlet(np.ones(cage.dimension), 20)
+        corners = list(loop)
+        weights = coordinates.boundary_weights(share @ cage.vertices[corners], face_keys(cage, face, 20), walks=4)
+        np.testing.assert_allclose(weights[:, corners], share, atol=1e-6)
+        assert np.all(np.delete(weights, corners, axis=1) == 0.0)
 
 
 def test_convex_quad_is_mean_value():
@@ -106,7 +108,7 @@ def slit_face(cut: Cut) -> int:
 
 def test_slit_face():
     """A slit face interpolates: unit sum, linear precision, no weight but of its own loop."""
-    coordinates, cut = cut_box(0.6)
+    coordinates, cut = cut_unit(0.6)
     cage, face = cut.cage, slit_face(cut)
     assert len(cage.faces[face]) == 7
     points = points_on_face(cage, face, 40, np.random.default_rng(4))
@@ -118,7 +120,7 @@ def test_slit_face():
 @pytest.mark.parametrize("side", [0, 1])
 def test_no_weight_across_the_slit(side):
     """A point next to a slit has no weight at all of the slit's other side, and is linear along its own."""
-    coordinates, cut = cut_box(0.6)
+    coordinates, cut = cut_unit(0.6)
     cage, face = cut.cage, slit_face(cut)
     loop, sides = set(cage.faces[face]), [set(side_vertices(cage, cut.wall, s).tolist()) for s in (0, 1)]
     (opened,), (other,) = (loop & (sides[s] - sides[1 - s]) for s in (side, 1 - side))
@@ -133,44 +135,50 @@ def test_no_weight_across_the_slit(side):
 
 
 @pytest.mark.parametrize("side", [0, 1])
-def test_sides_of_the_cut(side):
-    """A side of the cut interpolates among its own vertices only; on the front edge linearly between the two tips."""
-    coordinates, cut = cut_box(0.6)
+@pytest.mark.parametrize("name", UNITS)
+def test_sides_of_the_cut(name, side):
+    """A side of the cut interpolates among its own vertices only; on the front linearly between the tips."""
+    coordinates, cut = cut_unit(0.6, name)
     cage = cut.cage
     own, other = side_vertices(cage, cut.wall, side), side_vertices(cage, cut.wall, 1 - side)
     tips = np.intersect1d(own, other)
-    assert len(tips) == 2
+    assert len(tips) == cage.dimension - 1
     (face,) = np.flatnonzero(cage.face_key == 2 * cut.wall + side)
     points = points_on_face(cage, face, 30, np.random.default_rng(5))
     weights = coordinates.boundary_weights(points, face_keys(cage, face, 30), walks=64)
     assert_interpolates(weights, cage, points)
     assert np.all(weights[:, np.setdiff1d(other, tips)] == 0.0)
-    share = np.linspace(0.0, 1.0, 11)
-    on_front = share[:, None] * cage.vertices[tips[0]] + (1.0 - share)[:, None] * cage.vertices[tips[1]]
-    weights = coordinates.boundary_weights(on_front, face_keys(cage, face, 11), walks=64)
-    np.testing.assert_allclose(weights[:, tips], np.c_[share, 1.0 - share], atol=1e-5)
+    share = np.linspace([0.0, 1.0], [1.0, 0.0], 11) if len(tips) == 2 else np.ones((1, 1))
+    weights = coordinates.boundary_weights(share @ cage.vertices[tips], face_keys(cage, face, len(share)), walks=64)
+    np.testing.assert_allclose(weights[:, tips], share, atol=1e-5)
 
 
 @pytest.mark.parametrize("offset", [-1e-5, 1e-5, -0.2, 0.2])
-def test_split_face(offset):
+@pytest.mark.parametrize("name", UNITS)
+def test_split_face(name, offset):
     """Once a face is split a point of it has weights of its own piece only, however close to the cut."""
-    coordinates, cut = cut_box(1.1)
+    coordinates, cut = cut_unit(1.1, name)
     cage = cut.cage
     points = np.c_[np.full(9, 0.47 + offset), np.linspace(0.1, 0.9, 9), np.ones(9)]
-    (key,) = {int(k) for f, k in enumerate(cage.face_key) if np.all(cage.vertices[list(cage.faces[f])][:, 2] == 1.0)}
+    points = np.delete(points, np.arange(1, 4 - cage.dimension), axis=1)
+    (key,) = {int(k) for f, k in enumerate(cage.face_key) if np.all(cage.vertices[list(cage.faces[f])][:, -1] == 1.0)}
     weights = coordinates.boundary_weights(points, np.full(9, key), walks=64)
     assert_interpolates(weights, cage, points)
-    foreign = cage.vertex_piece != cage.piece_of(points - [0.0, 0.0, 0.1])[:, None]
+    foreign = cage.vertex_piece != cage.piece_of(points - 0.1 * np.eye(cage.dimension)[-1])[:, None]
     assert foreign.any()
     assert np.all(weights[foreign] == 0.0)
 
 
-def test_keys_are_checked():
-    """A key that no wall has is refused, with the range."""
-    cage = box()
+@pytest.mark.parametrize("name", UNITS)
+def test_keys_are_checked(name):
+    """A key that no wall has is refused, with the range; so are points of another dimension."""
+    cage = MAKERS[name]()
     coordinates = bake(cage)
-    for key in (12, -1):
-        with pytest.raises(ValueError, match="0 to 11"):
-            coordinates.boundary_weights(np.array([[0.5, 0.5, 1.0]]), np.array([key]))
-    with pytest.raises(ValueError, match="shape"):
-        coordinates.boundary_weights(np.array([[0.5, 0.5, 1.0]]), np.array([0, 1]))
+    point, count = np.array([[0.5, 0.5, 1.0]])[:, 3 - cage.dimension :], 2 * cage.face_count
+    for key in (count, -1):
+        with pytest.raises(ValueError, match=f"0 to {count - 1}"):
+            coordinates.boundary_weights(point, np.array([key]))
+    with pytest.raises(ValueError, match="one key a point"):
+        coordinates.boundary_weights(point, np.array([0, 1]))
+    with pytest.raises(ValueError, match=rf"shape \(n, {cage.dimension}\)"):
+        coordinates.boundary_weights(point[:, 1:], np.array([0]))

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cage_shapes import SHAPES, box, random_blade
+from cage_shapes import box, random_blade
+from harmonic_shapes import MAKERS, UNITS
 from newton_cagecut.cage import Blade, Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
 from newton_cagecut.surface import SurfaceCut
@@ -18,6 +19,7 @@ from solver_scenes import both_dimensions, make_solver
 from surface_shapes import bumpy_sphere
 
 BLADE = Blade([0.52, 0.5, 0.5], [0.1, 1.0, 0.05], [0.1, 0.0, -1.0])
+BLADES = {2: Blade([0.52, 0.5], [0.1, -1.0]), 3: BLADE}
 
 
 def _arrays(coordinates: HarmonicCoordinates) -> dict[str, np.ndarray]:
@@ -37,16 +39,16 @@ def _assert_same_cage(one: Cage, two: Cage) -> None:
     assert len(one.walls) == len(two.walls)
 
 
-def _coordinates(**options) -> HarmonicCoordinates:
-    points = np.random.default_rng(3).uniform(0.1, 0.9, (12, 3))
-    return HarmonicCoordinates(box(), points, walks=64, seed=5, gradients=True, device="cpu", **options)
+def _coordinates(dimension: int = 3, **options) -> HarmonicCoordinates:
+    cage, points = MAKERS[UNITS[dimension - 2]](), np.random.default_rng(3).uniform(0.1, 0.9, (12, dimension))
+    return HarmonicCoordinates(cage, points, walks=64, seed=5, gradients=True, device="cpu", **options)
 
 
 @pytest.mark.parametrize("name", ["box", "star_prism", "square_torus", *PLANES])
 def test_rewound_cut_is_what_it_was(name):
     """A cut rewound to a depth, or to a snapshot, equals the cut on its way there, and goes on as it did."""
-    base = (SHAPES | PLANES)[name]()
-    cut = Cut(base, BLADE if base.dimension == 3 else Blade([0.52, 0.5], [0.1, -1.0]))
+    base = MAKERS[name]()
+    cut = Cut(base, BLADES[base.dimension])
     known, snapshots = {}, {}
     for part in (0.0, 0.2, 0.5, 0.9, 1.2):
         known[part] = cut.advance(to=part * cut.length).cage
@@ -66,7 +68,7 @@ def test_rewound_cut_is_what_it_was(name):
 @given(st.integers(0, 2**32 - 1))
 def test_random_rewinds(name, seed):
     """A cut in an already cut cage, with random steps and turns, comes back to the last bit at every depth it had."""
-    rng, base = np.random.default_rng(seed), (SHAPES | PLANES)[name]()
+    rng, base = np.random.default_rng(seed), MAKERS[name]()
     first = Cut(base, random_blade(rng, base))
     cut = Cut(first.advance(to=0.6 * first.length).cage, random_blade(rng, base))
     known = [(0.0, cut.cage)]
@@ -114,17 +116,18 @@ def test_rewound_surface_cut():
 
 
 @pytest.mark.parametrize("options", [{}, {"vertex_capacity": 40, "point_capacity": 20}])
-def test_restored_coordinates_are_bit_identical(options):
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_restored_coordinates_are_bit_identical(dimension, options):
     """Restoring brings back every array, twice, and updates from there give what they gave."""
-    coordinates = _coordinates(**options)
-    cut = Cut(coordinates.cage, BLADE)
+    coordinates = _coordinates(dimension, **options)
+    cut = Cut(coordinates.cage, BLADES[dimension])
     coordinates.update(cut.advance(to=0.3))
     here, before, known = cut.snapshot(), coordinates.snapshot(), _arrays(coordinates)
     for _ in range(2):
         for depth in (0.5, 1.4):
             coordinates.update(cut.advance(to=depth))
         if options:
-            coordinates.set_points(np.array([12]), np.array([[0.2, 0.2, 0.2]]))
+            coordinates.set_points(np.array([12]), np.full((1, dimension), 0.2))
         after = _arrays(coordinates)
         assert not np.array_equal(after["weights"], known["weights"])
         coordinates.restore(before)
