@@ -51,7 +51,7 @@ def test_bunny_is_cut_twice(monkeypatch):
 def test_gingerbread_man_is_cut_down(monkeypatch, tmp_path):
     """The flat gingerbread man passes his own test after a bent cut, a slit and two cuts that free him."""
     usd = tmp_path / "gingerbread.usd"
-    scene = run(monkeypatch, "gingerbread", *FAST, "--num-frames", "64", "--usd", str(usd))
+    scene = run(monkeypatch, "gingerbread", *FAST, "--num-frames", "50", "--usd", str(usd))
     body = scene.solver.bodies[0]
     assert (scene.schedule.current, body.cage.piece_count, body.surface.mesh.component_count) == (4, 4, 4)
     assert scene.frame - scene._parted_at >= 20
