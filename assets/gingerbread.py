@@ -13,7 +13,7 @@ from assets.fields import ball, cone, union
 from assets.planar import fill
 from assets.write import FOLDER
 from newton_cagecut import Cage
-from newton_cagecut.cage import lifted
+from newton_cagecut.geometry import lifted
 from newton_cagecut.usd import write_cage, write_mesh
 
 SPACING = 0.0125  # of the points [m]

@@ -15,7 +15,8 @@ import time
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from newton_cagecut.cage import Blade, Cage, Cut
+from newton_cagecut.cage import Cage, Cut
+from newton_cagecut.section import Blade
 
 FACE_COUNTS = (100, 200, 407, 800, 1600, 3200)
 STEPS = 40

@@ -3,9 +3,9 @@
 
 """Cages with harmonic coordinates that can be cut while they move, as a solver for Newton.
 
-The rooms, from the bottom up: ``cage``, ``harmonic``, ``surface``, ``elastic``, ``usd``, ``wrap``,
-``solver``. The names here are the public ones. The method is "Fast Cutting of Cage Based Deformation with Walk on
-Spheres"; bit-identical updates and harmonic control variates go past it.
+The rooms, from the bottom up: ``geometry``, ``section``, ``cage``, ``harmonic``, ``surface``, ``elastic``, ``usd``,
+``wrap``, ``solver``. The names here are the public ones. The method is "Fast Cutting of Cage Based Deformation with
+Walk on Spheres"; bit-identical updates and harmonic control variates go past it.
 """
 
 from __future__ import annotations
@@ -14,15 +14,16 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .cage import Blade, Cage, CageEdit, Cut
+    from .cage import Cage, CageEdit, Cut
     from .elastic import Material
     from .harmonic import HarmonicCoordinates, UpdateStats
+    from .section import Blade
     from .solver import Capacity, CutReport, SolverCageCut, add_cage_body
     from .surface import Surface
     from .wrap import wrap_cage
 
 _ROOMS = {
-    "Blade": "cage",
+    "Blade": "section",
     "Cage": "cage",
     "CageEdit": "cage",
     "Capacity": "solver",

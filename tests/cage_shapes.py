@@ -6,7 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from newton_cagecut.cage import Blade, Cage
+from newton_cagecut.cage import Cage
+from newton_cagecut.section import Blade
 from plane_shapes import check_outline, ring
 
 

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from scipy.spatial import ConvexHull
 
 from cage_shapes import SHAPES, check_manifold, opened_characteristic, prism, voxels
-from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
+from newton_cagecut.cage import Cage, CageEdit, Cut
+from newton_cagecut.section import Blade
 from newton_cagecut.usd import read_cage
 from plane_shapes import PLANES, ring, segment_crossings
 from surface_shapes import icosphere

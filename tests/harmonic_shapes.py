@@ -8,8 +8,9 @@ import numpy as np
 import warp as wp
 
 from cage_shapes import SHAPES
-from newton_cagecut.cage import Blade, Cage, CageEdit, Cut, boundary_distances
+from newton_cagecut.cage import Cage, CageEdit, Cut, boundary_distances
 from newton_cagecut.harmonic import HarmonicCoordinates
+from newton_cagecut.section import Blade
 from plane_shapes import PLANES
 
 wp.config.quiet = True

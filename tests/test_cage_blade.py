@@ -7,7 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from newton_cagecut.cage import Blade, BladePlane
+from newton_cagecut.cage.wall import cut_wall
+from newton_cagecut.section import Blade, BladePlane
 
 
 def test_coordinates_are_skew():
@@ -40,7 +41,7 @@ def test_equal_points_have_equal_distances():
 def test_wall_of_a_plane():
     """A cut's wall is two-sided, with the plane's normal."""
     plane = BladePlane.of(Blade([1, 1, 1], [1, 0, 0], [0.5, 1, 0]))
-    wall = plane.wall()
+    wall = cut_wall(plane)
     assert wall.two_sided
     np.testing.assert_allclose(np.cross(*wall.axes), plane.normal, atol=1e-15)
 

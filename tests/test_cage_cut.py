@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from cage_shapes import SHAPES, box, check_manifold, opened_characteristic, square_torus, u_shape, voxels
-from newton_cagecut.cage import Blade, Cage, Cut
+from newton_cagecut.cage import Cage, Cut
+from newton_cagecut.section import Blade
 
 
 def _down_the_middle(cage: Cage) -> Cut:

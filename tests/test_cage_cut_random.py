@@ -10,7 +10,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from cage_shapes import CONVEX, SHAPES, check_manifold, opened_characteristic, random_blade
-from newton_cagecut.cage import Blade, Cage, CageEdit, Cut, check_inside
+from newton_cagecut.cage import Cage, CageEdit, Cut, check_inside
+from newton_cagecut.section import Blade
 from plane_shapes import PLANES
 
 EVERY = SHAPES | PLANES

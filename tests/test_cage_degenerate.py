@@ -9,7 +9,8 @@ import pytest
 
 from cage_shapes import box, check_manifold, random_blade
 from cut_sequences import EVERY, crossings
-from newton_cagecut.cage import Blade, Cut
+from newton_cagecut.cage import Cut
+from newton_cagecut.section import Blade
 from plane_shapes import PLANES, square
 
 NAMES = ("box", "merged_cube", "star_prism", "square_torus", "collinear_prism", "convex")

@@ -12,8 +12,9 @@ import pytest
 from cage_shapes import SHAPES, box, check_manifold, hexagonal_prism, prism, tetrahedron, u_shape, voxels
 from cut_sequences import CAGES, crossings
 from extension_checks import check_edit
-from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
-from newton_cagecut.cage.nearest import edge_distances
+from newton_cagecut.cage import Cage, CageEdit, Cut
+from newton_cagecut.geometry.distances import edge_distances
+from newton_cagecut.section import Blade
 from plane_shapes import PLANES, outline, rectangle, ring, square
 
 EVERY = SHAPES | PLANES | {"collinear_prism": CAGES["collinear_prism"]}

@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from cage_shapes import SHAPES, box, check_manifold, opened_characteristic
 from cut_sequences import crossings
-from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
+from newton_cagecut.cage import Cage, CageEdit, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from newton_cagecut.section import Blade
 
 RANDOM = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}
 

@@ -12,7 +12,8 @@ import pytest
 from cage_shapes import SHAPES, box, check_manifold, square_torus, star_prism, tetrahedron, voxels
 from cut_sequences import crossings
 from extension_checks import check_edit
-from newton_cagecut.cage import Blade, Cage, Cut
+from newton_cagecut.cage import Cage, Cut
+from newton_cagecut.section import Blade
 from plane_shapes import PLANES, outline, rectangle
 
 EVERY = SHAPES | PLANES

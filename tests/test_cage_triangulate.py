@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from newton_cagecut.cage import triangulate
+from newton_cagecut.geometry import triangulate
 
 
 def _areas(points, triangles):

@@ -10,8 +10,9 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from cage_shapes import SHAPES, box, check_manifold, opened_characteristic, random_blade, u_shape
-from newton_cagecut.cage import Blade, Cage, Cut
+from newton_cagecut.cage import Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from newton_cagecut.section import Blade
 from plane_shapes import PLANES, outline, rectangle
 
 EVERY = SHAPES | PLANES

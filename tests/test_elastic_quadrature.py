@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from newton_cagecut.cage import boundary_distances
-from newton_cagecut.cage.inside import simplex_distances
+from newton_cagecut.cage.checks.inside import simplex_distances
 from newton_cagecut.elastic import sample_quadrature
 from newton_cagecut.elastic.quadrature import _dense_inside
 from plane_shapes import PLANES

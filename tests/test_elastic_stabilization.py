@@ -7,9 +7,10 @@ import pytest
 import warp as wp
 
 from elastic_bodies import THICKNESS, Body, as_array, as_vectors, both_dimensions
-from newton_cagecut.cage import Blade, Cut
+from newton_cagecut.cage import Cut
 from newton_cagecut.elastic import Material, ReducedSystem
 from newton_cagecut.elastic.stabilization import stabilize
+from newton_cagecut.section import Blade
 from plane_shapes import square
 
 

@@ -13,10 +13,11 @@ from hypothesis import strategies as st
 
 from cage_shapes import box
 from harmonic_shapes import DEVICES, assert_identical, interior_points, random_blade, snapshot
-from newton_cagecut.cage import Blade, Cut
+from newton_cagecut.cage import Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
-from newton_cagecut.harmonic.bounds import BOUNDS, make_bounds
-from newton_cagecut.harmonic.bounds_kind import BoundsKind
+from newton_cagecut.harmonic.walks.bounds import BOUNDS, make_bounds
+from newton_cagecut.harmonic.walks.bounds.kind import BoundsKind
+from newton_cagecut.section import Blade
 from plane_shapes import square
 
 KINDS = [(kind, dimension) for dimension in (2, 3) for kind in BOUNDS]

@@ -54,7 +54,7 @@ def test_nothing_is_kept_without_cuttable(cage, points, monkeypatch):
     assert memory["landings"] == memory["bounds"] == 0
     arrays = [value for part in (free._walker, free._walker.landings) for value in vars(part).values()]
     assert max(array.size for array in arrays if isinstance(array, wp.array)) < len(points) * WALKS
-    monkeypatch.setattr("newton_cagecut.harmonic.walker._BATCH_WALKS", 7 * WALKS)
+    monkeypatch.setattr("newton_cagecut.harmonic.cache.walk_cache._BATCH_WALKS", 7 * WALKS)
     free.recompute()
     np.testing.assert_array_equal(free.weights, kept.weights)
 

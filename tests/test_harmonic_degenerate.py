@@ -17,8 +17,9 @@ from harmonic_shapes import (
     small_obstacle,
     snapshot,
 )
-from newton_cagecut.cage import Blade, Cage, Cut
+from newton_cagecut.cage import Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from newton_cagecut.section import Blade
 
 NAMES = pytest.mark.parametrize("name", ["square", "star", "holed_square", "box", "merged_cube", "star_prism"])
 CAVITIES = {"square": "holed_square", "box": "square_torus"}

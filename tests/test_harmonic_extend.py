@@ -23,8 +23,9 @@ from harmonic_shapes import (
     small_obstacle,
     snapshot,
 )
-from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
+from newton_cagecut.cage import Cage, CageEdit, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates, UpdateStats
+from newton_cagecut.section import Blade
 from plane_shapes import outline, rectangle
 
 FACES = {"box": (0, 3), "hexagonal_prism": (3, 1), "merged_cube": (4, 7), "square": (1, 2), "star": (3, 6)}

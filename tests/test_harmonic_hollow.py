@@ -9,8 +9,9 @@ import pytest
 
 from cage_shapes import voxels
 from harmonic_shapes import assert_identical, assert_reproduces, interior_points, snapshot
-from newton_cagecut.cage import Blade, Cage, Cut
+from newton_cagecut.cage import Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from newton_cagecut.section import Blade
 from plane_shapes import outline, rectangle
 
 

@@ -19,8 +19,9 @@ from harmonic_shapes import (
     random_blade,
     snapshot,
 )
-from newton_cagecut.cage import Blade, Cage, Cut, boundary_distances
+from newton_cagecut.cage import Cage, Cut, boundary_distances
 from newton_cagecut.harmonic import HarmonicCoordinates
+from newton_cagecut.section import Blade
 from plane_shapes import PLANES
 
 PAIR = pytest.mark.parametrize("name", ["star", "merged_cube"])

@@ -9,7 +9,7 @@ import pytest
 import warp as wp
 
 import harmonic_shapes  # noqa: F401  (quietens Warp)
-from newton_cagecut.harmonic.random import NESTED_STREAM, direction_on_circle, direction_on_sphere, pcg4d
+from newton_cagecut.harmonic.walks.random import NESTED_STREAM, direction_on_circle, direction_on_sphere, pcg4d
 
 POINTS, WALKS = 8158, 64
 

@@ -16,8 +16,9 @@ from harmonic_shapes import (
     points_inside,
     side_vertices,
 )
-from newton_cagecut.cage import Blade, Cage, Cut
+from newton_cagecut.cage import Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from newton_cagecut.section import Blade
 from plane_reference import PlaneReference, plane_reference
 from plane_shapes import loops_of, square
 from solid_reference import SolidReference, crowded

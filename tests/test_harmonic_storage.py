@@ -15,7 +15,7 @@ from cage_shapes import box
 from harmonic_shapes import assert_identical, interior_points, middle_cut, random_blade, snapshot
 from newton_cagecut.cage import Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
-from newton_cagecut.harmonic.container import read_container, write_container
+from newton_cagecut.harmonic.cache.container import read_container, write_container
 from plane_shapes import square
 
 WALKS = 32
@@ -171,7 +171,7 @@ def test_other_versions_are_refused(saved, tmp_path, monkeypatch):
     write_container(tmp_path / "later", {**header, "format": 99}, arrays)
     with pytest.raises(ValueError, match="format is number 99, this library's is 1"):
         HarmonicCoordinates.load(tmp_path / "later", half_cut_box(), POINTS[3])
-    monkeypatch.setattr("newton_cagecut.harmonic.storage._library_version", lambda: "7.0")
+    monkeypatch.setattr("newton_cagecut.harmonic.cache.storage._library_version", lambda: "7.0")
     with pytest.raises(ValueError, match=r"newton_cagecut .* has written it, this is 7\.0"):
         HarmonicCoordinates.load(saved, half_cut_box(), POINTS[3])
 
@@ -219,7 +219,7 @@ def test_a_save_that_fails_leaves_the_old_file(tmp_path, monkeypatch):
         file.write(b"half")
         raise OSError("no space left")
 
-    monkeypatch.setattr("newton_cagecut.harmonic.container.np.savez", fail)
+    monkeypatch.setattr("newton_cagecut.harmonic.cache.container.np.savez", fail)
     with pytest.raises(OSError, match="no space left"):
         coordinates.save(tmp_path / "walks")
     assert [path.name for path in tmp_path.iterdir()] == ["walks"]

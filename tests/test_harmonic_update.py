@@ -22,8 +22,9 @@ from harmonic_shapes import (
     random_blade,
     snapshot,
 )
-from newton_cagecut.cage import Blade, Cage, CageEdit, Cut
+from newton_cagecut.cage import Cage, CageEdit, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from newton_cagecut.section import Blade
 from plane_shapes import outline, rectangle
 
 RANDOM = settings(

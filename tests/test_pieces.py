@@ -10,7 +10,8 @@ import pytest
 
 import newton_cagecut as cagecut
 from cage_shapes import box, u_shape, voxels
-from newton_cagecut.cage import Blade, Cut
+from newton_cagecut.cage import Cut
+from newton_cagecut.section import Blade
 from surface_shapes import sphere
 
 

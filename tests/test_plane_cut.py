@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cage_shapes import box, random_blade
-from newton_cagecut.cage import Blade, BladePlane, Cage, Cut
+from newton_cagecut.cage import Cage, Cut
+from newton_cagecut.section import Blade, BladePlane
 from plane_shapes import PLANES, check_outline, comb, outline, rectangle, segment_crossings, square
 
 UP = Blade([0.513, 0.5], [0, 3])

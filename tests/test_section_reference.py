@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from cage_shapes import SHAPES, hexagonal_prism, random_blade
 from cut_sequences import CAGES, EVERY
-from newton_cagecut.cage import Blade, Cage, Cut
+from newton_cagecut.cage import Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from newton_cagecut.section import Blade
 from plane_shapes import loops_of
 
 RANDOM = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow]}

@@ -11,7 +11,7 @@ import pytest
 import warp as wp
 
 import newton_cagecut as cagecut
-from newton_cagecut.cage import Blade
+from newton_cagecut.section import Blade
 from solver_scenes import UPRIGHT, ball, box_cage, corners, make_solver, run, slanted_blade, vertex_rows
 from surface_shapes import check_surface
 

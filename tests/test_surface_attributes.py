@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from cage_shapes import box
-from newton_cagecut.cage import Blade, Cut
+from newton_cagecut.cage import Cut
+from newton_cagecut.section import Blade
 from newton_cagecut.surface import Surface, SurfaceCut
 from surface_shapes import icosphere
 

@@ -10,7 +10,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from cage_shapes import box, random_blade
-from newton_cagecut.cage import Blade, BladePlane, Cut
+from newton_cagecut.cage import Cut
+from newton_cagecut.section import Blade, BladePlane
 from newton_cagecut.surface import Surface, SurfaceCut
 from surface_shapes import (
     EVERY,

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from assets.bunny import bunny_mesh
 from cage_shapes import box
 from cut_sequences import ASSETS
-from newton_cagecut.cage import Blade, BladePlane, Cage, Cut, check_inside
-from newton_cagecut.cage.inside import simplex_distances
+from newton_cagecut.cage import Cage, Cut, check_inside
+from newton_cagecut.cage.checks.inside import simplex_distances
+from newton_cagecut.section import Blade, BladePlane
 from newton_cagecut.surface import Surface, SurfaceCut
 from newton_cagecut.usd import read_cage, read_surface
 from surface_shapes import SURFACES, check_caps, check_closed, check_outward, icosphere, sphere

@@ -7,7 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from newton_cagecut.cage import Blade, Cut
+from newton_cagecut.cage import Cut
+from newton_cagecut.section import Blade
 from newton_cagecut.surface import Surface, SurfaceCut
 from plane_shapes import comb, square
 from surface_shapes import annulus, check_sides, check_surface, disk, grid

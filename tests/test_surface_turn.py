@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 
 import newton_cagecut as cagecut
 from cage_shapes import box, random_blade
-from newton_cagecut.cage import Blade, Cut
+from newton_cagecut.cage import Cut
+from newton_cagecut.section import Blade
 from newton_cagecut.surface import Surface, SurfaceCut
 from surface_shapes import (
     EVERY,

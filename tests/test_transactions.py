@@ -9,7 +9,8 @@ import pytest
 
 import newton_cagecut as cagecut
 from cage_shapes import box
-from newton_cagecut.cage import Blade, Cut
+from newton_cagecut.cage import Cut
+from newton_cagecut.section import Blade
 from newton_cagecut.surface import SurfaceCut
 from solver_scenes import assert_same, everything, make_solver, run, slanted_blade, vertex_rows
 

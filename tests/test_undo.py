@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from cage_shapes import box, random_blade
 from harmonic_shapes import MAKERS, UNITS
-from newton_cagecut.cage import Blade, Cage, Cut
+from newton_cagecut.cage import Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates
+from newton_cagecut.section import Blade
 from newton_cagecut.surface import SurfaceCut
 from plane_shapes import PLANES
 from solver_scenes import both_dimensions, make_solver

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from pxr import Sdf, Usd, UsdGeom, UsdShade
 
-from newton_cagecut.cage import Blade, Cage, Cut
+from newton_cagecut.cage import Cage, Cut
+from newton_cagecut.section import Blade
 from newton_cagecut.surface import Surface, SurfaceCut
 from newton_cagecut.usd import AnimationWriter, BodyFrame, validate_animation
 from newton_cagecut.usd.normals import split_caps, vertex_normals

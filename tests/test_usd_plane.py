@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from pxr import Gf, Usd, UsdGeom
 
-from newton_cagecut.cage import Blade, Cut, lifted
+from newton_cagecut.cage import Cut
+from newton_cagecut.geometry import lifted
+from newton_cagecut.section import Blade
 from newton_cagecut.surface import SurfaceCut
 from newton_cagecut.usd import (
     AnimationWriter,

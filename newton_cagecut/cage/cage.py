@@ -13,15 +13,14 @@ from functools import cached_property
 
 import numpy as np
 
-from . import extension, validation
+from ..geometry import PolygonMesh, triangulate_faces, winding_numbers
 from .arguments import as_loops, as_vertices
-from .edit import CageEdit
-from .face_triangles import triangulate_faces
-from .obstacle import insert_obstacle
+from .checks import topology as validation
+from .edits import extrusion as extension
+from .edits.edit import CageEdit
+from .edits.obstacle import insert_obstacle
 from .pieces import component_piece
-from .polygon_mesh import PolygonMesh
 from .wall import Wall, face_walls
-from .winding import winding_numbers
 
 
 class Cage:

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..section import BladePlane
+
 
 @dataclass(frozen=True, eq=False)
 class Wall:
@@ -50,3 +52,13 @@ def face_walls(vertices: np.ndarray, face_start: np.ndarray, face_vertex: np.nda
     first /= np.linalg.norm(first, axis=1, keepdims=True)
     axes = first[:, None] if vertices.shape[1] == 2 else np.stack([first, np.cross(normals, first)], axis=1)
     return tuple(Wall(origin[i], axes[i], normals[i], two_sided=False) for i in range(len(size)))
+
+
+def cut_wall(plane: BladePlane) -> Wall:
+    """The two-sided wall that a cut along a plane leaves.
+
+    Args:
+        plane: The plane that the blade sweeps.
+    """
+    axes = plane.direction[None] if plane.dimension == 2 else np.stack([plane.edge, plane.across])
+    return Wall(plane.origin, axes, plane.normal, two_sided=True)

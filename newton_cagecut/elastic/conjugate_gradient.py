@@ -22,7 +22,7 @@ from collections.abc import Callable
 
 import warp as wp
 
-from .plane import inverse_in_plane
+from .plane_confinement import inverse_in_plane
 
 wp.set_module_options({"enable_backward": False})
 

@@ -10,7 +10,7 @@ import functools
 import warp as wp
 
 from .constitutive import CONSTITUTIVE_MODELS
-from .kernels import make_deformation_function, tie
+from .step_kernels import make_deformation_function, tie
 
 wp.set_module_options({"enable_backward": False})
 

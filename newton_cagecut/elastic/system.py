@@ -15,7 +15,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import warp as wp
 
-from . import energy, kernels, mass, plane, update
+from . import energy, mass
+from . import limit as update
+from . import plane_confinement as plane
+from . import step_kernels as kernels
 from .conjugate_gradient import ConjugateGradient
 from .material import Material
 from .stabilization import stabilize
@@ -185,7 +188,7 @@ class ReducedSystem:
     ) -> None:
         """Advance the vertices by one step; outputs may be the inputs.
 
-        A step that would change F by more than one (Frobenius norm) somewhere is cut to that; see ``update.py``.
+        A step that would change F by more than one (Frobenius norm) somewhere is cut to that; see ``limit.py``.
 
         Args:
             positions: Positions, shape (vertex_capacity,) vec3 [m].

@@ -3,9 +3,9 @@
 
 """Harmonic coordinates by Walk on Spheres: walls, walks, bounds, cache, resolve."""
 
+from .cache.domain import Domain
+from .cache.snapshot import CoordinatesSnapshot
 from .coordinates import HarmonicCoordinates
-from .domain import Domain
-from .snapshot import CoordinatesSnapshot
 from .stats import UpdateStats
 
 __all__ = ["CoordinatesSnapshot", "Domain", "HarmonicCoordinates", "UpdateStats"]

@@ -12,15 +12,15 @@ import numpy as np
 import warp as wp
 
 from ..cage import Cage, CageEdit, check_inside
-from .checks import checked_indices, checked_keys, checked_points
-from .domain import Domain
-from .landing import LANDING_DTYPES
+from .cache.domain import Domain
+from .cache.incremental import run_concerned
+from .cache.snapshot import CoordinatesSnapshot
+from .cache.storage import load_walker, save_walker
+from .cache.walk_cache import Walker
 from .options import WalkOptions
-from .snapshot import CoordinatesSnapshot
+from .point_checks import checked_indices, checked_keys, checked_points
 from .stats import UpdateStats
-from .storage import load_walker, save_walker
-from .update import run_concerned
-from .walker import Walker
+from .walks.landing import LANDING_DTYPES
 
 
 class HarmonicCoordinates:

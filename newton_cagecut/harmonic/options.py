@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .bounds import BOUNDS
+from .walks.bounds import BOUNDS
 
 CORRECTIONS = ("harmonic", "affine", "none")
 DISTANCES = ("grid", "all")

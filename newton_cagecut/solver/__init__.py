@@ -3,10 +3,10 @@
 
 """The Newton solver for cage bodies: builder functions, contacts, model edits."""
 
+from .body_pieces import BodyPiece
 from .builder import add_cage_body
+from .cut.cut_report import CutReport
 from .definition import Capacity
-from .pieces import BodyPiece
-from .report import CutReport
 from .solver import SolverCageCut
 
 __all__ = ["BodyPiece", "Capacity", "CutReport", "SolverCageCut", "add_cage_body"]

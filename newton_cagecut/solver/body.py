@@ -13,10 +13,10 @@ from ..cage import Cage
 from ..elastic import Energy, ReducedSystem
 from ..harmonic import HarmonicCoordinates
 from ..surface import Surface
-from .contact import ContactTerm
+from .body_quadrature import SPARE_COUNT, Quadrature
+from .contact.contact_term import ContactTerm
 from .definition import BodyDefinition
 from .embedding import embed
-from .quadrature import SPARE_COUNT, Quadrature
 from .rest_frame import RestFrame
 
 

@@ -11,14 +11,14 @@ import newton
 import numpy as np
 import warp as wp
 
-from ..cage import Blade
+from ..section import Blade
 from .body import CageBody
-from .body_cut import BodyCut
+from .body_pieces import BodyPiece, body_pieces
 from .builder import register_custom_attributes
-from .pieces import BodyPiece, body_pieces
+from .cut.body_cut import BodyCut
+from .cut.body_snapshot import BodySnapshot
+from .cut.cut_report import CutReport
 from .plan import PlanEntry, plan_of
-from .report import CutReport
-from .undo import BodySnapshot
 from .viewing import SurfaceViewer
 
 

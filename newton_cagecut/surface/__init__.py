@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Surfaces that a cage carries, and their cuts."""
 
-from .cut import SurfaceCut, SurfaceEdit
 from .surface import Surface
+from .surface_cut import SurfaceCut, SurfaceEdit
 
 __all__ = ["Surface", "SurfaceCut", "SurfaceEdit"]

@@ -13,8 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..cage import PolygonMesh, Wall, lifted
-from ..cage.winding import winding_numbers
+from ..cage import Wall
+from ..geometry import PolygonMesh, lifted, winding_numbers
 
 _CANCELLED = 1e-9
 

@@ -10,7 +10,8 @@ from os import PathLike
 import numpy as np
 from pxr import Sdf, Tf, Usd, UsdGeom, Vt
 
-from ..cage import Cage, lifted
+from ..cage import Cage
+from ..geometry import lifted
 from .layers import checked_path, export_stage, extent, flat_faces, integers, new_stage, vectors
 from .mesh_data import check_mesh
 from .outline import define_outline, outline_loops

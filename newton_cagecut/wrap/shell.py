@@ -14,9 +14,8 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..cage.inside import simplex_distances
-from ..cage.nearest import nearest_on_edges, nearest_on_triangles
-from ..cage.winding import winding_numbers
+from ..cage.checks.inside import simplex_distances
+from ..geometry import nearest_on_edges, nearest_on_triangles, winding_numbers
 from .inequalities import Inequalities
 from .sampling import triangle_grid
 
