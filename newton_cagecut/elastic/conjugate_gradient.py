@@ -128,7 +128,7 @@ class ConjugateGradient:
         count: Number of rows in use, shape (1,).
         fixed: Nonzero for rows that keep their value, shape (capacity,).
         normal: Unit normal of the plane that changes of the solution stay in, shape (1,) vec3d; none by default.
-        maximum_iterations: Iterations after which it stops.
+        max_iterations: Iterations after which it stops.
         tolerance: Stops when the preconditioned norm of the residual has shrunk by this factor.
     """
 
@@ -138,11 +138,11 @@ class ConjugateGradient:
         fixed: wp.array,
         *,
         normal: wp.array | None = None,
-        maximum_iterations: int,
+        max_iterations: int,
         tolerance: float,
     ):
         capacity, self.device = fixed.shape[0], fixed.device
-        self.maximum_iterations = maximum_iterations
+        self.max_iterations = max_iterations
         with wp.ScopedDevice(self.device):
             self.residual, self.solution, self.direction, self.product, self._conditioned = (
                 wp.zeros(capacity, dtype=wp.vec3) for _ in range(5)
@@ -157,7 +157,7 @@ class ConjugateGradient:
         )
         self._iterate = self._record(
             iterate,
-            [count, wp.float64(tolerance), maximum_iterations, self._inverses, self.product, self.residual]
+            [count, wp.float64(tolerance), max_iterations, self._inverses, self.product, self.residual]
             + [self.direction, self._conditioned, self.solution],
         )
 
@@ -171,7 +171,7 @@ class ConjugateGradient:
         if self.device.is_cuda and self.device.is_capturing and wp.is_conditional_graph_supported():
             wp.capture_while(self._running, self._advance, multiply=multiply)
             return
-        for _ in range(self.maximum_iterations):
+        for _ in range(self.max_iterations):
             if self._running_view is not None and not self._running_view[0]:
                 return
             self._advance(multiply)

@@ -68,7 +68,7 @@ class ReducedSystem:
         rotation: Rotation from the gradients' frame to that of the rest positions, shape (1,) mat33; identity if not
             given.
         thickness: Thickness of a plane body [m]; the body is solid if not given.
-        maximum_iterations: Most iterations of a solve.
+        max_iterations: Most iterations of a solve.
         tolerance: Factor by which a solve shrinks the preconditioned residual.
 
     Raises:
@@ -88,7 +88,7 @@ class ReducedSystem:
         fixed: wp.array | None = None,
         rotation: wp.array | None = None,
         thickness: float | None = None,
-        maximum_iterations: int = 150,
+        max_iterations: int = 150,
         tolerance: float = 1.0e-5,
     ):
         self.device, self.vertex_capacity, self.point_count = rest.device, rest.shape[0], weights.shape[0]
@@ -123,7 +123,7 @@ class ReducedSystem:
             self.vertex_count,
             self.fixed,
             normal=self._normal,
-            maximum_iterations=maximum_iterations,
+            max_iterations=max_iterations,
             tolerance=tolerance,
         )
         self._record_launches()

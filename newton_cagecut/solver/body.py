@@ -14,6 +14,7 @@ from ..elastic import Energy, ReducedSystem
 from ..harmonic import HarmonicCoordinates
 from ..surface import Surface
 from .body_quadrature import SPARE_COUNT, Quadrature
+from .config import Config
 from .contact.contact_term import ContactTerm
 from .definition import BodyDefinition
 from .embedding import embed
@@ -28,13 +29,22 @@ class CageBody:
         definition: What the body is made of.
         vertex_start: The cage's first particle.
         surface_start: The surface's first particle, -1 without contact.
+        config: How to solve.
         progress: Called with the finished fraction of the walks.
     """
 
     def __init__(
-        self, model: newton.Model, definition: BodyDefinition, vertex_start: int, surface_start: int, *, progress=None
+        self,
+        model: newton.Model,
+        definition: BodyDefinition,
+        vertex_start: int,
+        surface_start: int,
+        *,
+        config: Config,
+        progress=None,
     ) -> None:
         self.model, self.definition, self.device = model, definition, model.device
+        self.config = config
         self.label = definition.label
         self.capacity = definition.capacity
         self.surface: Surface = definition.surface
@@ -206,6 +216,8 @@ class CageBody:
             fixed=self.fixed,
             rotation=wp.array([self._frame.rotation], dtype=wp.mat33, device=self.device),
             thickness=self.definition.thickness,
+            max_iterations=self.config.max_iterations,
+            tolerance=self.config.tolerance,
         )
 
     def _padded(self, mask: np.ndarray) -> np.ndarray:

@@ -15,6 +15,7 @@ from ..section import Blade
 from .body import CageBody
 from .body_pieces import BodyPiece, body_pieces
 from .builder import register_custom_attributes
+from .config import Config
 from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
@@ -31,13 +32,26 @@ class SolverCageCut(newton.solvers.SolverBase):
 
     Args:
         model: The model, with bodies added by ``add_cage_body``.
+        config: How to solve; the defaults of :class:`Config` if not given.
         progress: Called while the weights are computed, with the finished fraction between 0 and 1.
+        options: Fields of :class:`Config`, which override those of ``config``.
 
     Raises:
-        ValueError: The model has no cage bodies.
+        TypeError: There is no such option, or an option or ``config`` has the wrong type.
+        ValueError: The model has no cage bodies, or an option is out of its range.
     """
 
-    def __init__(self, model: newton.Model, *, progress: Callable[[float], None] | None = None) -> None:
+    Config = Config
+
+    def __init__(
+        self,
+        model: newton.Model,
+        config: Config | None = None,
+        *,
+        progress: Callable[[float], None] | None = None,
+        **options: object,
+    ) -> None:
+        self._config = Config.of(config, options)
         super().__init__(model)
         rows = getattr(model, "cagecut", None)
         definitions = list(rows.definition) if rows is not None else []
@@ -54,6 +68,7 @@ class SolverCageCut(newton.solvers.SolverBase):
                 definition,
                 vertex_start,
                 surface_start,
+                config=self._config,
                 progress=progress and (lambda fraction, done=index: progress((done + fraction) / count)),
             )
             for index, (definition, (vertex_start, surface_start)) in enumerate(zip(definitions, starts, strict=True))
@@ -64,6 +79,11 @@ class SolverCageCut(newton.solvers.SolverBase):
     def register_custom_attributes(cls, builder: newton.ModelBuilder) -> None:
         """Declare what ``add_cage_body`` needs of a builder; calling it again changes nothing."""
         register_custom_attributes(builder)
+
+    @property
+    def config(self) -> Config:
+        """How the solver solves."""
+        return self._config
 
     @property
     def bodies(self) -> tuple[CageBody, ...]:
