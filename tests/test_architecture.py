@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rooms of the library and who may know whom, read from the imports."""
 
+import re
 import subprocess
 import sys
 from collections import Counter, defaultdict
@@ -32,6 +33,7 @@ LEVELS = {
         ("walks",),
         ("options",),
         ("point_checks",),
+        ("point_change",),
         ("faces",),
         ("resolve",),
         ("cache",),
@@ -193,6 +195,16 @@ def test_nothing_is_imported_in_vain(code: str, unwanted: str):
     run = subprocess.run([sys.executable, "-c", f"{code}\n{report}"], cwd=ROOT, capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
     assert run.stdout.splitlines()[-1] == "[]", run.stdout
+
+
+def test_contributing_names_the_rooms_and_tests_that_there_are():
+    """The tables of CONTRIBUTING.md list the rooms from the bottom up, and tests that exist."""
+    text = (ROOT / "CONTRIBUTING.md").read_text()
+    assert re.findall(r"^\| `(\w+)` \|", text.split("## Words")[0], re.MULTILINE) == list(KNOWN_ROOMS)
+    named = re.findall(r"`(test_\w+\.py)::(test_\w+)`", text)
+    assert len(named) > 20
+    missing = [f"{file}::{test}" for file, test in named if f"\ndef {test}(" not in (ROOT / "tests" / file).read_text()]
+    check([f"CONTRIBUTING.md: there is no {name}" for name in missing])
 
 
 def _part(file: str) -> str:
