@@ -4,13 +4,15 @@
 
 from __future__ import annotations
 
+import importlib
 import sys
 from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from collections.abc import Sequence
 
-from .wrap import command as cage_command
-
-_COMMANDS = {"cage": cage_command}
+_COMMANDS = {
+    "cage": ("wrap.command", "make a coarse cage around a mesh"),
+}
+"""Module and summary of each command. Only the module of the command that runs is imported."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -20,22 +22,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: Those of the command line, without the program's name; ``sys.argv`` by default.
 
     Returns:
-        The exit status: 0, or 1 with a line on the error stream. A command line that makes no sense exits with 2.
+        The exit status: that of the command, 0 if it says nothing, or 1 with a line on the error stream. A command line
+        that makes no sense exits with 2.
     """
+    arguments = sys.argv[1:] if arguments is None else list(arguments)
     parser = ArgumentParser(
         prog="python -m newton_cagecut", description="Cages with harmonic coordinates that can be cut, for Newton."
     )
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True, title="commands")
-    for name, command in _COMMANDS.items():
-        texts = {"help": command.HELP, "description": command.DESCRIPTION, "epilog": command.EPILOG}
-        command.add_options(commands.add_parser(name, formatter_class=RawDescriptionHelpFormatter, **texts))
+    chosen = arguments[0] if arguments else None
     try:
+        for name, (module, summary) in _COMMANDS.items():
+            added = commands.add_parser(name, help=summary, formatter_class=RawDescriptionHelpFormatter)
+            if name == chosen:
+                command = importlib.import_module(f".{module}", __package__)
+                added.description, added.epilog = command.DESCRIPTION, command.EPILOG
+                command.add_options(added)
         options = parser.parse_args(arguments)
-        _COMMANDS[options.command].run(options)
+        return command.run(options) or 0
     except (ImportError, OSError, ValueError) as error:
         print(f"{parser.prog}: {' '.join(str(error).split())}", file=sys.stderr)
         return 1
-    return 0
 
 
 if __name__ == "__main__":

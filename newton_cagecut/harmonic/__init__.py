@@ -6,6 +6,8 @@
 from .cache.domain import Domain
 from .cache.snapshot import CoordinatesSnapshot
 from .coordinates import HarmonicCoordinates
+from .journal import Journal
+from .point_change import PointChange
 from .stats import UpdateStats
 
-__all__ = ["CoordinatesSnapshot", "Domain", "HarmonicCoordinates", "UpdateStats"]
+__all__ = ["CoordinatesSnapshot", "Domain", "HarmonicCoordinates", "Journal", "PointChange", "UpdateStats"]

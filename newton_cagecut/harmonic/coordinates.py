@@ -14,10 +14,12 @@ import warp as wp
 from ..cage import Cage, CageEdit, check_inside
 from .cache.domain import Domain
 from .cache.incremental import run_concerned
-from .cache.snapshot import CoordinatesSnapshot
+from .cache.snapshot import CoordinatesSnapshot, edited_arrays
 from .cache.storage import load_walker, save_walker
 from .cache.walk_cache import Walker
+from .journal import Journal
 from .options import WalkOptions
+from .point_change import PointChange
 from .point_checks import checked_indices, checked_keys, checked_points
 from .stats import UpdateStats
 from .walks.landing import LANDING_DTYPES
@@ -169,7 +171,9 @@ class HarmonicCoordinates:
         """Bytes of each part on the device."""
         return self._walker.memory()
 
-    def update(self, edit: CageEdit) -> UpdateStats:
+    def update(
+        self, edit: CageEdit, *, points: PointChange | None = None, journal: Journal | None = None
+    ) -> UpdateStats:
         """Bring the weights up to date with an edit of the cage.
 
         Only the walks that the new piece of wall may have met are walked again, only landings on changed faces are
@@ -179,12 +183,25 @@ class HarmonicCoordinates:
 
         Args:
             edit: The next edit of the cage that the coordinates hold.
+            points: Points to set on the edited cage, as :meth:`set_points` does; their time is "new_points".
+            journal: Journal of a larger edit that this one is a part of, and that can take it back.
 
         Raises:
             ValueError: There is no walk cache, the edit does not start from the present cage, an obstacle covers
-                points, the cage has too many vertices or extensions. Nothing has changed then.
+                points, the cage has too many vertices or extensions, or a point cannot be set. Nothing has changed
+                then, nor has it after any other failure.
         """
-        walker = self._cache_of("update")
+        self._cache_of("update")
+        with Journal.within(journal) as journal:
+            self._keep(journal)
+            stats = self._updated(edit)
+            if points is not None and len(points.indices):
+                added = self.set_points(points.indices, points.points, points.keys, journal=journal)
+                stats.seconds["new_points"] = added.total_seconds
+        return stats
+
+    def _updated(self, edit: CageEdit) -> UpdateStats:
+        walker = self._walker
         if edit.before is not self._cage:
             raise ValueError(
                 "update: the edit starts from another cage than the coordinates hold; pass every edit, in order"
@@ -204,8 +221,17 @@ class HarmonicCoordinates:
         run_concerned(walker, change, stats)
         return stats
 
-    def recompute(self) -> UpdateStats:
-        """Walk every walk again on the walls as they are: the paper's naive baseline."""
+    def recompute(self, *, journal: Journal | None = None) -> UpdateStats:
+        """Walk every walk again on the walls as they are: the paper's naive baseline.
+
+        Args:
+            journal: Journal of a larger edit that this one is a part of, and that can take it back.
+        """
+        with Journal.within(journal) as journal:
+            self._keep(journal)
+            return self._recomputed()
+
+    def _recomputed(self) -> UpdateStats:
         stats = self._new_stats()
         self._cage = self.domain.cage
         self._walker.require_vertices(self._cage.vertex_count)
@@ -222,19 +248,22 @@ class HarmonicCoordinates:
         """
         return CoordinatesSnapshot.of(self._cache_of("snapshot"), self.domain)
 
-    def restore(self, snapshot: CoordinatesSnapshot) -> None:
+    def restore(self, snapshot: CoordinatesSnapshot, *, journal: Journal | None = None) -> None:
         """Undo every edit since a snapshot: cage, walls, walks and weights are the same again, bit for bit.
 
         Args:
             snapshot: A snapshot of these coordinates; it can be restored any number of times.
+            journal: Journal of a larger edit that this one is a part of, and that can take it back.
 
         Raises:
             ValueError: The snapshot is of other coordinates. Nothing has changed then.
         """
         if snapshot.owner is not self._walker:
             raise ValueError("restore: the snapshot is of other coordinates; restore those, or take one of these")
-        snapshot.restore()
-        self._cage = snapshot.cage
+        with Journal.within(journal) as journal:
+            self._keep(journal)
+            snapshot.restore()
+            self._cage = snapshot.cage
 
     def save(self, path: str | os.PathLike) -> None:
         """Write the coordinates to a file, walks and cuts so far included, for :meth:`load`.
@@ -283,13 +312,21 @@ class HarmonicCoordinates:
         coordinates._walker, coordinates.domain, coordinates._cage = walker, walker.domain, cage
         return coordinates
 
-    def set_points(self, indices: np.ndarray, points: np.ndarray, point_keys: np.ndarray | None = None) -> UpdateStats:
+    def set_points(
+        self,
+        indices: np.ndarray,
+        points: np.ndarray,
+        point_keys: np.ndarray | None = None,
+        *,
+        journal: Journal | None = None,
+    ) -> UpdateStats:
         """Move points, put new ones where some were removed, or add them at the end, and walk for them alone.
 
         Args:
             indices: Points to set, shape (n,); those beyond the count continue it without gaps.
             points: Rest positions [m], shape (n, dimension).
             point_keys: Key 2 * wall + side for points on a wall, else -1, shape (n,).
+            journal: Journal of a larger edit that this one is a part of, and that can take it back.
 
         Raises:
             ValueError: A point lies outside the cage, an index is twice there or leaves a gap, a key is of no wall, or
@@ -304,19 +341,22 @@ class HarmonicCoordinates:
         keys = checked_keys(point_keys, len(points), len(self.domain.cage.walls))
         walker.require_points(int(indices.max(initial=-1)) + 1)
         outside = check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
-        walker.place(indices, points, keys, outside=outside)
-        stats = self._new_stats()
-        stats.rewalked = len(indices) * self.walks
-        walker.run_points(indices, stats)
+        with Journal.within(journal) as journal:
+            self._keep(journal)
+            walker.place(indices, points, keys, outside=outside)
+            stats = self._new_stats()
+            stats.rewalked = len(indices) * self.walks
+            walker.run_points(indices, stats)
         return stats
 
-    def remove_points(self, indices: np.ndarray) -> None:
+    def remove_points(self, indices: np.ndarray, *, journal: Journal | None = None) -> None:
         """Remove points: from now on their weights and gradients are 0, and nothing is walked for them.
 
         The others keep their numbers, by which walks draw their randomness, and so every bit.
 
         Args:
             indices: Points to remove, shape (n,).
+            journal: Journal of a larger edit that this one is a part of, and that can take it back.
 
         Raises:
             TypeError: The indices are not whole numbers.
@@ -329,7 +369,9 @@ class HarmonicCoordinates:
             raise ValueError(
                 f"remove_points: there is no point {gone[0]}; there are {self.point_count}, less removed ones"
             )
-        walker.remove(indices)
+        with Journal.within(journal) as journal:
+            self._keep(journal)
+            walker.remove(indices)
 
     def boundary_weights(self, points: np.ndarray, point_keys: np.ndarray, *, walks: int = 1024) -> np.ndarray:
         """Weights of points on the cage's walls, on the faces as they are.
@@ -379,6 +421,17 @@ class HarmonicCoordinates:
         if not self._walker.cuttable:
             raise ValueError(f"{wanted}: these coordinates were made with cuttable=False and keep no walk cache")
         return self._walker
+
+    def _keep(self, journal: Journal) -> None:
+        """Keep everything that edits overwrite."""
+        walker, domain = self._walker, self.domain
+        journal.keep_attributes(self, "_cage")
+        journal.keep_attributes(domain, "cage", "faces", "faces_before", "_last")
+        journal.keep_attributes(domain.walls, "triangle_count", "_rows", "data")
+        journal.keep_attributes(domain.grid, "cells", "_nearest", "_built_size", "_farthest")
+        journal.keep_attributes(walker, "point_count", "_rest", "weights", "gradients", "vertex_capacity", "landings")
+        walker._rest = walker._rest.copy()
+        journal.keep(*(array for array in edited_arrays(walker).values() if array.size))
 
     def _new_stats(self) -> UpdateStats:
         return UpdateStats(self.walks * (self.point_count - len(self.removed_points)))

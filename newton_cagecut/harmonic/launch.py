@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 
 import warp as wp
 
@@ -59,10 +59,21 @@ def launch(
         wp.launch(kernel, dim=min(size, count - start), inputs=[start, *inputs], device=device)
         return min(start + size, count)
 
-    chunk_results = _thread_pool(core_count).map(run, starts) if len(starts) > 1 else map(run, starts)
-    for end in chunk_results:
-        if progress is not None:
-            progress(end / count)
+    report = progress or _ignore
+    if len(starts) == 1:
+        report(run(0) / count)
+        return
+    # Ended by a failure or an interrupt, none of them writes any more once that is raised: it may be taken back then.
+    chunks: list[Future] = []
+    try:
+        for start in starts:
+            chunks.append(_thread_pool(core_count).submit(run, start))
+        for chunk in chunks:
+            report(chunk.result() / count)
+    finally:
+        for chunk in chunks:
+            chunk.cancel()
+        wait(chunks)
 
 
 def launch_blocks(kernel: wp.Kernel, count: int, inputs: list, *, device: wp.Device) -> None:
@@ -77,6 +88,10 @@ def launch_blocks(kernel: wp.Kernel, count: int, inputs: list, *, device: wp.Dev
     """
     block = 1 if device.is_cuda else _BLOCK
     launch(kernel, -(-count // block), [block, count, *inputs], device=device, smallest_chunk=8)
+
+
+def _ignore(fraction: float) -> None:
+    """Report to nobody."""
 
 
 def _core_count() -> int:

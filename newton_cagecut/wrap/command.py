@@ -18,7 +18,6 @@ from ..usd.layers import checked_path
 from .reading import read_any_mesh
 from .wrap import checked_face_count, checked_offset, wrap_cage
 
-HELP = "make a coarse cage around a mesh"
 DESCRIPTION = """\
 Make a closed cage of a few triangles around a mesh and write it to a USD file,
 as a guide. The cage holds every triangle of the mesh at a distance, and passes

@@ -60,8 +60,9 @@ class CandidateGrid:
         new = [wp.array(blocks, dtype=wp.vec3i, device=device), self.walls.data, first_new]
         launch_blocks(measure_new, cell_count, [*new, old, self._nearest, reaches, counts], device=device)
         wp.utils.array_scan(counts, counts, inclusive=True)
-        cells = copied(old, int(counts[-1:].numpy()[0]))
-        launch_blocks(fill_merged, cell_count, [*new, counts, old, cells, reaches, self._nearest], device=device)
+        cells, nearest = copied(old, int(counts[-1:].numpy()[0])), wp.clone(self._nearest)
+        launch_blocks(fill_merged, cell_count, [*new, counts, old, cells, reaches, nearest], device=device)
+        self._nearest = nearest
         self.cells = cells if cells.items.size <= _MOST_GROWTH * self._built_size else compacted(cells)
 
     def _reachable_blocks(self, first_new: int) -> np.ndarray:
@@ -75,13 +76,12 @@ class CandidateGrid:
         return corner[away <= reach].astype(np.int32)
 
     def state(self) -> tuple:
-        """The grid as it is: merging replaces the cells, and writes to the distances, of which this has a copy."""
-        return self.cells, wp.clone(self._nearest), self._built_size, self._farthest
+        """The grid as it is; merging replaces what this refers to, and never writes to it."""
+        return self.cells, self._nearest, self._built_size, self._farthest
 
     def restore(self, state: tuple) -> None:
         """Forget the walls that were merged since a state."""
-        self.cells, nearest, self._built_size, self._farthest = state
-        self._nearest = wp.clone(nearest)
+        self.cells, self._nearest, self._built_size, self._farthest = state
 
     def _build(self) -> None:
         device = self.walls.device
