@@ -16,7 +16,7 @@ from examples.cutting import PlannedCut, along, frames_of
 from examples.picture import Camera
 from examples.recording import StaticMesh
 from examples.scene import CutScene, require
-from newton_cagecut.solver.body import CageBody
+from newton_cagecut.solver import CageBody
 from newton_cagecut.usd import read_cage, read_surface
 
 ASSETS = Path(__file__).parent.parent / "assets"

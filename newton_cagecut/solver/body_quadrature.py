@@ -51,9 +51,7 @@ class BodyQuadrature:
     generator: np.random.Generator
 
     @classmethod
-    def sampled(
-        cls, cage: Cage, count: int, *, spare_count: int, seed: int, thickness: float | None
-    ) -> BodyQuadrature:
+    def sampled(cls, cage: Cage, count: int, *, spare_count: int, seed: int, thickness: float | None) -> BodyQuadrature:
         """Sample a cage.
 
         Args:

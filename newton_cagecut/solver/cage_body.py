@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import newton
 import numpy as np
+import warp as wp
 
 from ..cage import Cage
 from ..elastic import Energy, Material
@@ -64,9 +65,20 @@ class CageBody:
         return self._simulated.coordinates
 
     @property
+    def surface_weights(self) -> np.ndarray:
+        """Weights of the surface's points, shape (point_count, vertex_count), float32; a copy."""
+        first = self._simulated.surface_row
+        return self.coordinates.weights[first : first + self.surface.point_count]
+
+    @property
     def quadrature_count(self) -> int:
         """Number of quadrature points, spare ones included; 0 without elasticity."""
         return self._simulated.quadrature_count
+
+    @property
+    def device(self) -> wp.Device:
+        """Where the body is simulated."""
+        return self._simulated.device
 
     @property
     def is_plane(self) -> bool:

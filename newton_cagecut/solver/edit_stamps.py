@@ -119,9 +119,9 @@ class EditStamps:
 
 
 _WHAT_TO_DO = (
-    "Pass every state in use to the edit: advance_cut(cut, ..., states=(state_0, state_1)), snapshot(body, states=...). "
-    "A state that missed one can be assigned from one that did not; model.state() starts from rest as the body is now. "
-    "Cut a model's bodies through one solver."
+    "Pass every state in use to edits: advance_cut(cut, ..., states=(state_0, state_1)), snapshot(body, states=...). "
+    "A state that missed one can be assigned from one that did not, or from model.state(), which starts from rest as "
+    "the body is now. Edit a model's bodies through one solver."
 )
 
 
@@ -136,5 +136,7 @@ def state_edits(state: newton.State) -> wp.array:
     """
     rows = getattr(state, "cagecut", None)
     if rows is None:
-        raise TypeError(f"a state of a model with cage bodies is needed, from model.state(); got {type(state).__name__}")
+        raise TypeError(
+            f"a state of a model with cage bodies is needed, from model.state(); got {type(state).__name__}"
+        )
     return rows.edit

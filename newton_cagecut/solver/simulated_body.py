@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import newton
 import numpy as np
@@ -23,7 +24,6 @@ from .definition import BodyDefinition
 from .edit_stamps import EditStamps, hold_rows, state_edits
 from .embedding import embed
 from .rest_frame import RestFrame
-
 
 _NUDGE = 1.0e-6
 """How far points on cuts are moved off the other cuts, in diameters of the cage."""
@@ -76,6 +76,7 @@ class SimulatedBody:
         self.system = self._make_system() if self.quadrature_count else None
         self.contact = ContactTerm(self) if self.has_contact and self.system else None
         self._surface_buffer = None
+        self._held = tuple(wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device) for _ in range(2))
         self._always = wp.ones(1, dtype=wp.int32, device=self.device)
         self._triangles = wp.empty(self.capacity.surface_triangles, dtype=wp.vec3i, device=self.device)
         self.set_surface(self.surface)
@@ -118,13 +119,24 @@ class SimulatedBody:
                 self.contact.collect(state_in, contacts)
                 term = self.contact
             forces = state_in.particle_f[self.vertices]
-            enabled = self.is_current
-            self.system.step(
-                q_in, qd_in, q_out, qd_out, dt, gravity=self.gravity, forces=forces, term=term, enabled=enabled
-            )
+            q_old, qd_old = self._before_step(q_in, qd_in) if state_in is state_out else (q_in, qd_in)
+            self.system.step(q_in, qd_in, q_out, qd_out, dt, gravity=self.gravity, forces=forces, term=term)
+            self._hold([q_old, qd_old, q_out, qd_out])
         if self.has_contact:
-            self._hold_surface(state_in, state_out)
+            if state_in is not state_out:
+                rows = self.surface_particles
+                self._hold([a[rows] for s in (state_in, state_out) for a in (s.particle_q, s.particle_qd)])
             self.embed_particles(state_out, enabled=self.is_current)
+
+    def _before_step(self, positions: wp.array, velocities: wp.array) -> tuple[wp.array, wp.array]:
+        """Copies of positions and velocities that a step overwrites."""
+        wp.copy(self._held[0], positions)
+        wp.copy(self._held[1], velocities)
+        return self._held
+
+    def _hold(self, rows: list[wp.array]) -> None:
+        """Carry rows over as they were where the state missed an edit: positions and velocities, before and after."""
+        wp.launch(hold_rows, dim=rows[0].size, inputs=[self.is_current, *rows], device=self.device)
 
     @property
     def is_current(self) -> wp.array:
@@ -158,15 +170,6 @@ class SimulatedBody:
         """
         self._embed(state.particle_q[self.vertices], state.particle_q[self.surface_particles], enabled)
         self._embed(state.particle_qd[self.vertices], state.particle_qd[self.surface_particles], enabled)
-
-    def _hold_surface(self, state_in: newton.State, state_out: newton.State) -> None:
-        """Carry the surface's particles over where the state missed an edit."""
-        if state_in is state_out:
-            return
-        rows = self.surface_particles
-        inputs = [self.is_current, state_in.particle_q[rows], state_in.particle_qd[rows]]
-        inputs += [state_out.particle_q[rows], state_out.particle_qd[rows]]
-        wp.launch(hold_rows, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
 
     def surface_points(self, state: newton.State) -> wp.array:
         """Positions of the surface's points [m], shape (point_count,), a view that the next call overwrites."""
@@ -205,10 +208,9 @@ class SimulatedBody:
             journal: The edit's journal.
             states: States that the edit carries over.
         """
-        # Taken back last, from all that is kept after it.
-        journal.keep_derived(self.refresh)
+        journal.when_taken_back(self.refresh)
+        journal.when_taken_back(partial(self.model.cagecut.definition.__setitem__, self.row, self.definition))
         journal.keep_attributes(self, "surface", "definition", "quadrature")
-        journal.keep_items(self.model.cagecut.definition, self.row)
         journal.keep(*self.edited_arrays(states))
 
     def edited_arrays(self, states: Sequence[newton.State]) -> list[wp.array]:
