@@ -65,6 +65,7 @@ class EditStamps:
         self._labels = tuple(labels)
         self._missed = wp.zeros(len(labels), dtype=wp.int32, device=self.device)
         self._seen = wp.zeros(len(labels), dtype=wp.int32, device="cpu", pinned=self.device.is_cuda)
+        self._seen_counts = self._seen.numpy()  # a view, of host memory on every device
 
     def compare(self, state: newton.State) -> None:
         """Find which bodies a step may move, with kernels alone; outside of a capture raise where it may not.
@@ -88,7 +89,7 @@ class EditStamps:
         Raises:
             ValueError: It has; the text says which body, and what to do.
         """
-        counts = self._seen.numpy()
+        counts = self._seen_counts
         if not counts.any():
             return
         wp.synchronize_device(self.device)
