@@ -23,9 +23,13 @@ if TYPE_CHECKING:  # for type checkers; the table says the same to Python
     from .harmonic import HarmonicCoordinates as HarmonicCoordinates
     from .harmonic import UpdateStats as UpdateStats
     from .section import Blade as Blade
+    from .solver import BodyCut as BodyCut
     from .solver import BodyPiece as BodyPiece
+    from .solver import BodySnapshot as BodySnapshot
+    from .solver import CageBody as CageBody
     from .solver import Capacity as Capacity
     from .solver import CutReport as CutReport
+    from .solver import PlanEntry as PlanEntry
     from .solver import SolverCageCut as SolverCageCut
     from .solver import add_cage_body as add_cage_body
     from .surface import Surface as Surface
@@ -33,14 +37,18 @@ if TYPE_CHECKING:  # for type checkers; the table says the same to Python
 
 _ROOMS = {
     "Blade": "section",
+    "BodyCut": "solver",
     "BodyPiece": "solver",
+    "BodySnapshot": "solver",
     "Cage": "cage",
+    "CageBody": "solver",
     "CageEdit": "cage",
     "Capacity": "solver",
     "Cut": "cage",
     "CutReport": "solver",
     "HarmonicCoordinates": "harmonic",
     "Material": "elastic",
+    "PlanEntry": "solver",
     "SolverCageCut": "solver",
     "Surface": "surface",
     "UpdateStats": "harmonic",
