@@ -19,7 +19,7 @@ from examples.progress import fraction_bar, frame_bar
 from examples.recording import Recording, StaticMesh
 from examples.timings import Timings
 from newton_cagecut import SolverCageCut
-from newton_cagecut.solver.body import CageBody
+from newton_cagecut.solver import CageBody
 
 
 class CutScene:
@@ -179,7 +179,7 @@ def require(true: bool, text: str) -> None:
 
 def _moves_as_pieces(body: CageBody) -> bool:
     """Whether all points of a piece of the surface have their weights on one and the same piece of the cage."""
-    weights = body.coordinates.weights[body.surface_row :]
+    weights = body.surface_weights
     owned = np.arange(body.cage.component_count) == np.asarray(body.cage.vertex_component)[:, None]
     shares = weights @ owned.astype(np.float32)
     owner, piece = shares.argmax(axis=1), body.surface.mesh.vertex_component

@@ -16,7 +16,7 @@ import numpy as np
 from examples.cutting import PlannedCut
 from examples.table import table_lines
 from newton_cagecut import Cut, CutReport, HarmonicCoordinates, SolverCageCut
-from newton_cagecut.solver.body import CageBody
+from newton_cagecut.solver import CageBody
 
 RECOMPUTE_EVERY = 8  # steps of the first cut
 UPDATE_PARTS = {

@@ -13,24 +13,42 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from .cage import Cage, CageEdit, Cut
-    from .elastic import Material
-    from .harmonic import HarmonicCoordinates, UpdateStats
-    from .section import Blade
-    from .solver import Capacity, CutReport, SolverCageCut, add_cage_body
-    from .surface import Surface
-    from .wrap import wrap_cage
+from ._version import __version__ as __version__
+
+if TYPE_CHECKING:  # for type checkers; the table says the same to Python
+    from .cage import Cage as Cage
+    from .cage import CageEdit as CageEdit
+    from .cage import Cut as Cut
+    from .elastic import Material as Material
+    from .harmonic import HarmonicCoordinates as HarmonicCoordinates
+    from .harmonic import UpdateStats as UpdateStats
+    from .section import Blade as Blade
+    from .solver import BodyCut as BodyCut
+    from .solver import BodyPiece as BodyPiece
+    from .solver import BodySnapshot as BodySnapshot
+    from .solver import CageBody as CageBody
+    from .solver import Capacity as Capacity
+    from .solver import CutReport as CutReport
+    from .solver import PlanEntry as PlanEntry
+    from .solver import SolverCageCut as SolverCageCut
+    from .solver import add_cage_body as add_cage_body
+    from .surface import Surface as Surface
+    from .wrap import wrap_cage as wrap_cage
 
 _ROOMS = {
     "Blade": "section",
+    "BodyCut": "solver",
+    "BodyPiece": "solver",
+    "BodySnapshot": "solver",
     "Cage": "cage",
+    "CageBody": "solver",
     "CageEdit": "cage",
     "Capacity": "solver",
     "Cut": "cage",
     "CutReport": "solver",
     "HarmonicCoordinates": "harmonic",
     "Material": "elastic",
+    "PlanEntry": "solver",
     "SolverCageCut": "solver",
     "Surface": "surface",
     "UpdateStats": "harmonic",
@@ -38,21 +56,7 @@ _ROOMS = {
     "wrap_cage": "wrap",
 }
 
-__all__ = [
-    "Blade",
-    "Cage",
-    "CageEdit",
-    "Capacity",
-    "Cut",
-    "CutReport",
-    "HarmonicCoordinates",
-    "Material",
-    "SolverCageCut",
-    "Surface",
-    "UpdateStats",
-    "add_cage_body",
-    "wrap_cage",
-]
+__all__ = ["__version__", *_ROOMS]
 
 
 def __getattr__(name: str) -> object:
@@ -60,3 +64,8 @@ def __getattr__(name: str) -> object:
     if name not in _ROOMS:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(importlib.import_module(f".{_ROOMS[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    """The public names, those that have not been imported yet among them."""
+    return sorted(__all__)

@@ -10,7 +10,7 @@ from argparse import ArgumentParser, RawDescriptionHelpFormatter
 from collections.abc import Sequence
 
 _COMMANDS = {
-    "cage": ("wrap.command", "make a coarse cage around a mesh"),
+    "cage": ("wrap.cage_command", "make a coarse cage around a mesh"),
 }
 """Module and summary of each command. Only the module of the command that runs is imported."""
 

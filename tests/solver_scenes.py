@@ -80,9 +80,14 @@ def slanted_blade(dimension: int = 3) -> cagecut.Blade:
     return cagecut.Blade([0.45, 0.5, 0.5], [0.1, 1.0, 0.15], [0.2, -0.1, -1.0])
 
 
+def simulated(solver: cagecut.SolverCageCut, row: int = 0):
+    """What is inside of a body, for tests that look at its arrays."""
+    return solver._simulated[row]
+
+
 def everything(solver: cagecut.SolverCageCut, states) -> dict[str, np.ndarray]:
     """All arrays that an edit may touch."""
-    body, model = solver.bodies[0], solver.model
+    body, model = simulated(solver), solver.model
     arrays = {"rest": body.rest, "fixed": body.fixed, "count": body.vertex_count, "mass": body.system.mass}
     arrays |= {"volumes": body.system.volumes, "flags": model.particle_flags, "particle_mass": model.particle_mass}
     arrays |= {

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import newton_cagecut as cagecut
-from solver_scenes import ball, box_cage, corners, make_solver, run, vertex_rows
+from solver_scenes import ball, box_cage, corners, make_solver, run, simulated, vertex_rows
 
 Config = cagecut.SolverCageCut.Config
 
@@ -52,7 +52,7 @@ def test_options_reach_the_solve(model):
     for name, options in {"default": {}, "bounded": {"max_iterations": 2}, "coarse": {"tolerance": 0.1}}.items():
         solver = cagecut.SolverCageCut(model, **options)
         state, _ = run(solver, (model.state(), model.state()), 3)
-        found[name] = int(solver.bodies[0].system.iterations.numpy()[0]), vertex_rows(solver, state)
+        found[name] = int(simulated(solver).system.iterations.numpy()[0]), vertex_rows(solver, state)
     assert found["bounded"][0] == 2
     assert 0 < found["coarse"][0] < found["default"][0]
     assert not np.array_equal(found["coarse"][1], found["default"][1])

@@ -20,6 +20,7 @@ from solver_scenes import (
     everything,
     make_solver,
     run,
+    simulated,
     slanted_blade,
     vertex_rows,
 )
@@ -86,7 +87,7 @@ def test_surface_is_cut_and_stays_whole(dimension: int):
         assert triangles.max() < len(points)
         np.testing.assert_allclose(points, body.to_world(surface.points), atol=1.0e-5)
     assert report.separated
-    assert report.components == surface.mesh.component_count == 2
+    assert report.piece_count == surface.mesh.component_count == 2
     assert (surface.triangle_cap >= 0).any() == (dimension == 3)
 
 
@@ -99,7 +100,7 @@ def test_pieces_weigh_what_their_volumes_say(dimension: int):
     solver.advance_cut(cut, to=10.0, states=states)
     body = solver.bodies[0]
     cage = body.cage
-    mass = body.system.vertex_mass.numpy()[: cage.vertex_count]
+    mass = simulated(solver).system.vertex_mass.numpy()[: cage.vertex_count]
     by_piece = np.bincount(cage.vertex_component, mass)
     np.testing.assert_allclose(by_piece, 700.0 * cage.component_volumes, rtol=0.01)
 
@@ -152,7 +153,7 @@ def test_cuts_go_on_side_by_side(dimension: int):
         for cut in (first, second):
             if not cut.complete:
                 report = solver.advance_cut(cut, 0.25 * cut.length, states=states)
-    assert report.components == 4
+    assert report.piece_count == 4
     check_surface(solver.bodies[0].surface, volume)
 
 
@@ -170,7 +171,7 @@ def test_blade_that_misses_changes_nothing():
 def test_pointers_never_change():
     """Cuts write in place, so captured graphs, viewers and contact buffers keep their arrays."""
     model, solver, *states = make_solver(contact_radius=0.01)
-    body = solver.bodies[0]
+    body = simulated(solver)
     arrays = (body.rest, body.coordinates.weights_array, body.coordinates.gradients_array, model.particle_flags)
     arrays += (body.system.mass, states[0].particle_q, body.system.volumes)
     before = [array.ptr for array in arrays]
@@ -262,7 +263,7 @@ def test_crossing_cuts_keep_surface_points_with_their_piece(share: float, dimens
         for k in range(1, 6):
             solver.advance_cut(cut, to=until * cut.length * k / 5, states=states)
     body = solver.bodies[0]
-    weights = body.coordinates.weights[body.surface_row :]
+    weights = body.surface_weights
     pieces = body.cage.component_count
     assert pieces == (4 if share == 1.0 else 3 if dimension == 2 else 2)
     shares = np.stack([weights[:, body.cage.vertex_component == k].sum(axis=1) for k in range(pieces)], axis=1)

@@ -21,7 +21,7 @@ KNIVES = {
 
 def _shared(cut) -> np.ndarray:
     """Points of the surface that both sides of a cut share: at its front and along the knife's borders."""
-    surface, wall = cut.body.surface, cut.cut.wall
+    surface, wall = cut._body.surface, cut.cut.wall
     sides = [np.unique(surface.triangles[surface.triangle_key == 2 * wall + side]) for side in (0, 1)]
     return np.intersect1d(*sides)
 
@@ -65,7 +65,7 @@ def test_weights_where_both_sides_meet(name):
         np.testing.assert_allclose(mine @ body.cage.vertices, points, atol=2e-5)
         border = np.isin(np.arange(body.cage.vertex_count), _border_vertices(cut))
         assert mine[:, ~border].sum(axis=1).max() < 2e-4
-        np.testing.assert_allclose(body.coordinates.weights[body.surface_row + shared], mine, atol=2e-4)
+        np.testing.assert_allclose(body.surface_weights[shared], mine, atol=2e-4)
 
 
 def _border_vertices(cut) -> np.ndarray:

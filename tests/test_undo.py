@@ -16,7 +16,7 @@ from newton_cagecut.harmonic import HarmonicCoordinates
 from newton_cagecut.section import Blade
 from newton_cagecut.surface import SurfaceCut
 from plane_shapes import PLANES
-from solver_scenes import both_dimensions, make_solver
+from solver_scenes import both_dimensions, make_solver, simulated
 from surface_shapes import bumpy_sphere
 
 BLADE = Blade([0.52, 0.5, 0.5], [0.1, 1.0, 0.05], [0.1, 0.0, -1.0])
@@ -151,7 +151,7 @@ def test_restore_refuses_other_coordinates():
 def test_restored_body_is_bit_identical(dimension):
     """A body restored after pieces came off is what it was, array by array, and its cut goes on as it did."""
     model, solver, state, _ = make_solver(gravity=-9.81, dimension=dimension)
-    body = solver.bodies[0]
+    body = simulated(solver)
     cut = solver.begin_cut(0, BLADE if dimension == 3 else Blade([0.52, 0.5], [0.1, -1.0]))
     solver.advance_cut(cut, 0.4, states=(state,))
 

@@ -4,10 +4,10 @@
 
 from .cage import Cage
 from .checks.clearance import mesh_clearance
-from .checks.inside import boundary_distances, check_inside
+from .checks.inside import boundary_distances, check_inside, simplex_distances
 from .edits.cut import Cut, CutSnapshot
 from .edits.edit import CageEdit
-from .pieces import CagePiece
+from .pieces import CagePiece, pieces_of
 from .wall import Wall
 
 __all__ = [
@@ -20,4 +20,6 @@ __all__ = [
     "boundary_distances",
     "check_inside",
     "mesh_clearance",
+    "pieces_of",
+    "simplex_distances",
 ]

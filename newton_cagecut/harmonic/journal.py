@@ -86,3 +86,11 @@ class Journal:
                 setattr(owner, name, value)
 
         self._undo.append(undo)
+
+    def when_taken_back(self, step: Callable[[], None]) -> None:
+        """Run a step when edits are taken back, once everything that is kept after this call is as it was.
+
+        Args:
+            step: What to do, such as making anew what follows from kept values.
+        """
+        self._undo.append(step)

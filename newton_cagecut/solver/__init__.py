@@ -3,10 +3,29 @@
 
 """The Newton solver for cage bodies: builder functions, contacts, model edits."""
 
+import newton
+
 from .body_pieces import BodyPiece
 from .builder import add_cage_body
+from .cage_body import CageBody
+from .cut.body_cut import BodyCut
+from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
 from .definition import Capacity
+from .newton_version import warn_if_untested
+from .plan import PlanEntry
 from .solver import SolverCageCut
 
-__all__ = ["BodyPiece", "Capacity", "CutReport", "SolverCageCut", "add_cage_body"]
+__all__ = [
+    "BodyCut",
+    "BodyPiece",
+    "BodySnapshot",
+    "CageBody",
+    "Capacity",
+    "CutReport",
+    "PlanEntry",
+    "SolverCageCut",
+    "add_cage_body",
+]
+
+warn_if_untested(newton.__version__)

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cage.pieces import pieces_of
-from .body import CageBody
+from ..cage import pieces_of
+from .simulated_body import SimulatedBody
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,7 +37,7 @@ class BodyPiece:
     mass: float
 
 
-def body_pieces(body: CageBody) -> tuple[BodyPiece, ...]:
+def body_pieces(body: SimulatedBody) -> tuple[BodyPiece, ...]:
     """The pieces of a body as it is now, in the order of their lowest cage vertices.
 
     Args:

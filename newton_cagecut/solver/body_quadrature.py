@@ -9,11 +9,14 @@ others and without volume until then, go to pieces that were cut off between the
 
 from __future__ import annotations
 
+import copy
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
 import numpy as np
 
 from ..cage import Cage
 from ..elastic import sample_quadrature
-from ..harmonic import HarmonicCoordinates
 
 SPARE_COUNT = 64
 """Spare points that a body which can be cut reserves."""
@@ -23,61 +26,92 @@ _FEWEST = 8
 
 _CANDIDATE_COUNT = 4096
 
+DistanceToWalls = Callable[[np.ndarray], np.ndarray]
+"""Distances of points, shape (n, dimension), to the nearest wall, shape (n,) [m]."""
 
-class Quadrature:
-    """Quadrature points and volumes [m^3] in a cage's rest frame.
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BodyQuadrature:
+    """Quadrature points and volumes in a cage's rest frame; immutable.
 
     Args:
-        cage: The cage before any cut.
-        count: Wanted number of points.
-        spare_count: Points to keep for later pieces.
-        seed: Seed of the sample.
-        thickness: Thickness of a plane body [m]; None for a solid one.
+        points: The points, spare ones at the end, shape (point_count, dimension) [m].
+        volumes: Their volumes, shape (point_count,) [m^3].
+        shares: How volumes are shared within a piece, 0 for spare points not in use, shape (point_count,).
+        used_count: Number of points that are not spare ones, or no longer.
+        thickness: Thickness of a plane body, 1 of a solid one [m].
+        generator: Where spare points' places are drawn from.
     """
 
-    def __init__(self, cage: Cage, count: int, *, spare_count: int, seed: int, thickness: float | None) -> None:
-        sampled, volumes = sample_quadrature(cage, count, seed=seed)
-        self._used = len(sampled)
-        self._rng = np.random.default_rng(seed)
-        self._thickness = 1.0 if thickness is None else thickness
-        self._shares = np.concatenate([volumes, np.zeros(spare_count)])
-        self.points = np.concatenate([sampled, np.repeat(sampled[:1], spare_count, axis=0)])
-        self.volumes = self._thickness * self._shares
+    points: np.ndarray
+    volumes: np.ndarray
+    shares: np.ndarray
+    used_count: int
+    thickness: float
+    generator: np.random.Generator
 
-    def distribute(self, cage: Cage, coordinates: HarmonicCoordinates) -> None:
-        """Give every piece of a cage enough points and its own volume.
+    @classmethod
+    def sampled(cls, cage: Cage, count: int, *, spare_count: int, seed: int, thickness: float | None) -> BodyQuadrature:
+        """Sample a cage.
+
+        Args:
+            cage: The cage.
+            count: Wanted number of points.
+            spare_count: Points to keep for later pieces.
+            seed: Seed of the sample.
+            thickness: Thickness of a plane body [m]; None for a solid one.
+        """
+        sampled, volumes = sample_quadrature(cage, count, seed=seed)
+        shares = np.concatenate([volumes, np.zeros(spare_count)])
+        thickness = 1.0 if thickness is None else thickness
+        return cls(
+            points=np.concatenate([sampled, np.repeat(sampled[:1], spare_count, axis=0)]),
+            volumes=thickness * shares,
+            shares=shares,
+            used_count=len(sampled),
+            thickness=thickness,
+            generator=np.random.default_rng(seed),
+        )
+
+    def distributed(self, cage: Cage, distance_to_walls: DistanceToWalls) -> BodyQuadrature:
+        """The same points, with enough of them and its own volume in every piece of a cage.
 
         Args:
             cage: The cage as it is now.
-            coordinates: Coordinates whose first points are these; spare points are moved in them.
+            distance_to_walls: Distances in that cage.
         """
-        piece = cage.piece_of(self.points)
-        piece[self._used :] = -1
+        generator = copy.deepcopy(self.generator)
+        points, shares, volumes = self.points.copy(), self.shares.copy(), self.volumes.copy()
+        used = self.used_count
+        piece = cage.piece_of(points)
+        piece[used:] = -1
         for index, volume in enumerate(cage.piece_volumes):
             own = np.flatnonzero(piece == index)
             if len(own) < _FEWEST:
-                own = np.concatenate([own, self._place(cage, index, _FEWEST - len(own), coordinates)])
-                self._shares[own] = 1.0
-            total = self._shares[own].sum()
+                wanted = min(_FEWEST - len(own), len(points) - used)
+                placed = _places(cage, index, wanted, distance_to_walls, generator)
+                fresh = np.arange(used, used + len(placed))
+                points[fresh], used = placed, used + len(placed)
+                own = np.concatenate([own, fresh])
+                shares[own] = 1.0
+            total = shares[own].sum()
             if total > 0.0:
-                self.volumes[own] = self._shares[own] * (self._thickness * volume / total)
+                volumes[own] = shares[own] * (self.thickness * volume / total)
+        return replace(self, points=points, volumes=volumes, shares=shares, used_count=used, generator=generator)
 
-    def _place(self, cage: Cage, piece: int, count: int, coordinates: HarmonicCoordinates) -> np.ndarray:
-        """Move spare points into a piece, away from its faces and from each other; returns their indices."""
-        count = min(count, len(self.points) - self._used)
-        corners = cage.vertices[cage.vertex_piece == piece]
-        low, high = corners.min(axis=0), corners.max(axis=0)
-        candidates = low + (high - low) * self._rng.random((_CANDIDATE_COUNT, len(low)))
-        candidates = candidates[cage.piece_of(candidates) == piece]
-        if count <= 0 or not len(candidates):
-            return np.zeros(0, dtype=np.int64)
-        depth = coordinates.domain.distance_to_walls(candidates)
-        chosen = _spread(candidates[depth >= 0.4 * depth.max()], count)
-        indices = np.arange(self._used, self._used + len(chosen))
-        self._used += len(chosen)
-        self.points[indices] = chosen
-        coordinates.set_points(indices, chosen)
-        return indices
+
+def _places(
+    cage: Cage, piece: int, count: int, distance_to_walls: DistanceToWalls, generator: np.random.Generator
+) -> np.ndarray:
+    """Places in a piece, away from its faces and from each other, at most ``count``, shape (n, dimension)."""
+    corners = cage.vertices[cage.vertex_piece == piece]
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    candidates = low + (high - low) * generator.random((_CANDIDATE_COUNT, len(low)))
+    candidates = candidates[cage.piece_of(candidates) == piece]
+    if count <= 0 or not len(candidates):
+        return np.zeros((0, cage.dimension))
+    depth = distance_to_walls(candidates)
+    return _spread(candidates[depth >= 0.4 * depth.max()], count)
 
 
 def _spread(candidates: np.ndarray, count: int) -> np.ndarray:

@@ -25,13 +25,17 @@ from .rest_frame import RestFrame
 
 FREQUENCY = "cagecut:body"
 
+_MODEL, _STATE = newton.Model.AttributeAssignment.MODEL, newton.Model.AttributeAssignment.STATE
+
 _ROWS = (
-    ("definition", str, None),
-    ("body_label", str, None),
-    ("vertex_start", wp.int32, "particle"),
-    ("surface_start", wp.int32, "particle"),
-    ("body_world", wp.int32, "world"),
+    ("definition", str, None, _MODEL, ""),
+    ("body_label", str, None, _MODEL, ""),
+    ("vertex_start", wp.int32, "particle", _MODEL, -1),
+    ("surface_start", wp.int32, "particle", _MODEL, -1),
+    ("body_world", wp.int32, "world", _MODEL, -1),
+    ("edit", wp.int32, None, _STATE, 0),
 )
+"""Name, type, what it refers to, whose attribute it is, and default of each row; ``edit``: see ``edit_stamps``."""
 
 
 def register_custom_attributes(builder: newton.ModelBuilder) -> None:
@@ -40,7 +44,7 @@ def register_custom_attributes(builder: newton.ModelBuilder) -> None:
         name="body", namespace="cagecut", label_attribute="cagecut:body_label"
     )
     builder.add_custom_frequency(frequency)
-    for name, dtype, references in _ROWS:
+    for name, dtype, references, assignment, default in _ROWS:
         builder.add_custom_attribute(
             newton.ModelBuilder.CustomAttribute(
                 name=name,
@@ -48,7 +52,8 @@ def register_custom_attributes(builder: newton.ModelBuilder) -> None:
                 dtype=dtype,
                 frequency=FREQUENCY,
                 references=references,
-                default="" if dtype is str else -1,
+                assignment=assignment,
+                default=default,
             )
         )
 
@@ -148,6 +153,7 @@ def add_cage_body(
             "cagecut:body_label": definition.label,
             "cagecut:vertex_start": vertex_start,
             "cagecut:surface_start": surface_start,
+            "cagecut:edit": 0,
         }
     )
     return index

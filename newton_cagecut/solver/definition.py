@@ -69,7 +69,7 @@ class Capacity:
 
 @dataclass(frozen=True, kw_only=True)
 class BodyDefinition:
-    """A cage body before it is simulated, in the cage's rest frame.
+    """What a cage body is made of, in the cage's rest frame; every edit of the body replaces the model's.
 
     Args:
         label: Name of the body.
@@ -85,6 +85,8 @@ class BodyDefinition:
         contact_radius: Radius of the surface points as Newton's particles [m]; None without contact.
         thickness: Thickness of a plane body [m]; None for a solid one.
         options: Further options of the harmonic coordinates.
+        edit: Number of the edit that it is as of, 0 before the first; undoing one goes back to the number before.
+        last_edit: Highest number that an edit has had.
     """
 
     label: str
@@ -100,3 +102,5 @@ class BodyDefinition:
     contact_radius: float | None
     thickness: float | None
     options: dict[str, object]
+    edit: int = 0
+    last_edit: int = 0

@@ -12,6 +12,7 @@ wp.set_module_options({"enable_backward": False})
 
 @wp.kernel(enable_backward=False)
 def embed(
+    enabled: wp.array[wp.int32],
     weights: wp.array2d[float],
     first_row: int,
     point_count: wp.array[wp.int32],
@@ -21,7 +22,7 @@ def embed(
 ):
     """Sum a vertex field with the weights of each surface point."""
     i = wp.tid()
-    if i >= point_count[0]:
+    if i >= point_count[0] or enabled[0] == 0:
         return
     total = wp.vec3()
     for j in range(vertex_count[0]):

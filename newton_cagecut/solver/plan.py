@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from .body import CageBody
+    from .simulated_body import SimulatedBody
 
 
 class PlanEntry(NamedTuple):
@@ -34,7 +34,7 @@ class PlanEntry(NamedTuple):
         return f"{self.body:<20} {self.feature:<16} {mark} {self.byte_count / 1e6:>9.2f} MB  {self.reason}"
 
 
-def plan_of(body: CageBody) -> list[PlanEntry]:
+def plan_of(body: SimulatedBody) -> list[PlanEntry]:
     """The plan of one body."""
     definition, memory = body.definition, body.coordinates.memory()
     cuttable, elastic, contact = definition.cuttable, body.system is not None, body.contact is not None
@@ -65,14 +65,14 @@ def plan_of(body: CageBody) -> list[PlanEntry]:
     return [PlanEntry(body.label, *row) for row in rows]
 
 
-def _space_reason(body: CageBody) -> str:
+def _space_reason(body: SimulatedBody) -> str:
     """Why a body has a third dimension, or has none."""
     if body.is_plane:
         return f"a plane cage: plane strain, {body.definition.thickness:g} m thick, no caps"
     return "the body is solid"
 
 
-def _faces_reason(body: CageBody) -> str:
+def _faces_reason(body: SimulatedBody) -> str:
     """Why walks go on in faces, or do not."""
     if body.is_plane:
         return "all faces are segments"

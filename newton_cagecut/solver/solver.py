@@ -12,14 +12,16 @@ import numpy as np
 import warp as wp
 
 from ..section import Blade
-from .body import CageBody
-from .body_pieces import BodyPiece, body_pieces
+from .body_pieces import BodyPiece
 from .builder import register_custom_attributes
+from .cage_body import CageBody
 from .config import Config
 from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
+from .edit_stamps import EditStamps, state_edits
 from .plan import PlanEntry, plan_of
+from .simulated_body import SimulatedBody
 from .viewing import SurfaceViewer
 
 
@@ -60,19 +62,19 @@ class SolverCageCut(newton.solvers.SolverBase):
                 "the model has no cage bodies: call SolverCageCut.register_custom_attributes(builder) and "
                 "add_cage_body(builder, ...) before builder.finalize()"
             )
-        starts = zip(rows.vertex_start.numpy().tolist(), rows.surface_start.numpy().tolist(), strict=True)
         count = len(definitions)
-        self._bodies = [
-            CageBody(
+        self._stamps = EditStamps(model, [definition.label for definition in definitions])
+        self._simulated = [
+            SimulatedBody(
                 model,
-                definition,
-                vertex_start,
-                surface_start,
+                row,
+                self._stamps,
                 config=self._config,
-                progress=progress and (lambda fraction, done=index: progress((done + fraction) / count)),
+                progress=progress and (lambda fraction, done=row: progress((done + fraction) / count)),
             )
-            for index, (definition, (vertex_start, surface_start)) in enumerate(zip(definitions, starts, strict=True))
+            for row in range(count)
         ]
+        self._bodies = tuple(CageBody(body) for body in self._simulated)
         self._viewer = SurfaceViewer()
 
     @classmethod
@@ -88,7 +90,7 @@ class SolverCageCut(newton.solvers.SolverBase):
     @property
     def bodies(self) -> tuple[CageBody, ...]:
         """The cage bodies, in the order in which they were added."""
-        return tuple(self._bodies)
+        return self._bodies
 
     def body(self, body: int | str) -> CageBody:
         """A body by index or label.
@@ -96,11 +98,14 @@ class SolverCageCut(newton.solvers.SolverBase):
         Raises:
             ValueError: There is no such body.
         """
-        for index, candidate in enumerate(self._bodies):
-            if body == candidate.label or (isinstance(body, int | np.integer) and body == index):
-                return candidate
-        labels = ", ".join(candidate.label for candidate in self._bodies)
-        raise ValueError(f"there is no cage body {body!r}; there are {len(self._bodies)}: {labels}")
+        return self._bodies[self._row(body)]
+
+    def _row(self, body: int | str) -> int:
+        for row, candidate in enumerate(self._simulated):
+            if body == candidate.label or (isinstance(body, int | np.integer) and body == row):
+                return row
+        labels = ", ".join(candidate.label for candidate in self._simulated)
+        raise ValueError(f"there is no cage body {body!r}; there are {len(self._simulated)}: {labels}")
 
     def step(
         self,
@@ -114,6 +119,9 @@ class SolverCageCut(newton.solvers.SolverBase):
     ) -> None:
         """Advance all cage bodies by one step; rigid bodies are copied through.
 
+        A body whose rows of ``state_in`` missed an edit is left where it is there, and counted: in a replay of a
+        captured graph nothing else can be done. Outside of a capture that raises, then or at the next call.
+
         Args:
             state_in: State before the step.
             state_out: State after it; may be the same.
@@ -123,16 +131,19 @@ class SolverCageCut(newton.solvers.SolverBase):
             observables: Not supported beyond Newton's checks.
 
         Raises:
-            ValueError: The contacts were reduced by body pairs.
+            TypeError: The state is none of a model with cage bodies.
+            ValueError: The contacts were reduced by body pairs, or ``state_in`` missed an edit of a body.
         """
         self.validate_observables(observables, contacts)
         self._require_unreduced_contacts(contacts)
+        self._stamps.compare(state_in)
         if state_in is not state_out:
             for name in ("body_q", "body_qd", "joint_q", "joint_qd"):
                 source, target = getattr(state_in, name, None), getattr(state_out, name, None)
                 if source is not None and target is not None:
                     wp.copy(target, source)
-        for body in self._bodies:
+            wp.copy(state_edits(state_out), state_edits(state_in))
+        for body in self._simulated:
             body.step(state_in, state_out, contacts, dt)
 
     def begin_cut(self, body: int | str, blade: Blade) -> BodyCut:
@@ -145,7 +156,8 @@ class SolverCageCut(newton.solvers.SolverBase):
         Raises:
             ValueError: There is no such body, or it was added with cuttable=False.
         """
-        return BodyCut(self.body(body), blade)
+        self._stamps.raise_missed()
+        return BodyCut(self._simulated[self._row(body)], blade)
 
     def advance_cut(
         self,
@@ -157,11 +169,13 @@ class SolverCageCut(newton.solvers.SolverBase):
     ) -> CutReport:
         """Advance a cut: the model edit. A failed edit leaves model, states and weights as they were.
 
-        Cuts of one body may advance in turn; ``cut.turn(direction)`` bends one at its present front.
+        Cuts of one body may advance in turn; ``cut.turn(direction)`` bends one at its present front. The model's own
+        initial state follows: ``model.state()`` starts from rest as the body is then. A state that is not passed can
+        no longer be stepped; see :meth:`step`.
 
         Args:
             cut: The cut.
-            by: Length to advance by, in the rest frame [m].
+            by: Length to advance by from where the cut is, in the rest frame [m].
             to: Depth to advance to instead, from where the blade first touches [m].
             states: All states in use; new cage vertices get their positions and velocities in each.
 
@@ -169,12 +183,14 @@ class SolverCageCut(newton.solvers.SolverBase):
             What was done.
 
         Raises:
-            ValueError: Neither or both of ``by`` and ``to`` are given, the cut would go back, or the result does not
-                fit the reserved capacity.
+            TypeError: A length is not a number, or ``states`` are not states.
+            ValueError: Neither or both of ``by`` and ``to`` are given, the cut would go back, the result does not fit
+                the reserved capacity, or a state missed an earlier edit.
         """
         if (by is None) == (to is None):
             raise ValueError("advance_cut needs either a length to advance by or to=depth")
-        return cut.advance(cut.depth + by if to is None else to, tuple(states))
+        self._stamps.raise_missed()
+        return cut.advance(cut.depth + by if to is None else to, states)
 
     def snapshot(
         self, body: int | str = 0, *, states: Sequence[newton.State] = (), cuts: Sequence[BodyCut] = ()
@@ -189,13 +205,19 @@ class SolverCageCut(newton.solvers.SolverBase):
         Raises:
             ValueError: There is no such body, or it was added with cuttable=False.
         """
-        return BodySnapshot(self.body(body), tuple(states), tuple(cuts))
+        self._stamps.raise_missed()
+        return BodySnapshot(self._simulated[self._row(body)], states, cuts)
 
     def restore(self, snapshot: BodySnapshot) -> None:
         """Undo every cut since a snapshot: cage, weights, surface, masses and the states' rows are as they were.
 
+        All or nothing. States that the snapshot does not hold cannot be stepped any more, unless they are of that time.
+
         Args:
             snapshot: A snapshot of a body of this solver.
+
+        Raises:
+            ValueError: The body was cut through another solver of the model meanwhile.
         """
         snapshot.restore()
 
@@ -205,7 +227,7 @@ class SolverCageCut(newton.solvers.SolverBase):
         Returns:
             Points in the world [m], shape (n, 3), float32, and triangles, shape (m, 3), int32.
         """
-        found = self.body(body)
+        found = self._simulated[self._row(body)]
         return found.surface_points(state).numpy().copy(), np.array(found.surface.triangles, dtype=np.int32)
 
     def pieces(self, body: int | str = 0) -> tuple[BodyPiece, ...]:
@@ -217,13 +239,13 @@ class SolverCageCut(newton.solvers.SolverBase):
         Raises:
             ValueError: There is no such body.
         """
-        return body_pieces(self.body(body))
+        return self.body(body).pieces
 
     def log(self, viewer: newton.viewer.ViewerBase, state: newton.State) -> None:
         """Show the surfaces in any Newton viewer, with the topology of this frame; caps have a colour of their own."""
-        for body in self._bodies:
+        for body in self._simulated:
             self._viewer.log(viewer, body, state)
 
     def plan(self) -> list[PlanEntry]:
         """What the scene uses, what was left out and why, and the bytes of each."""
-        return [entry for body in self._bodies for entry in plan_of(body)]
+        return [entry for body in self._simulated for entry in plan_of(body)]

@@ -9,7 +9,7 @@ import newton
 import numpy as np
 import warp as wp
 
-from .body import CageBody
+from .simulated_body import SimulatedBody
 
 SKIN_COLOR = (0.91, 0.46, 0.33)
 CAP_COLOR = (0.98, 0.84, 0.70)
@@ -21,7 +21,7 @@ class SurfaceViewer:
     def __init__(self) -> None:
         self._indices: dict[str, tuple[object, wp.array, wp.array]] = {}
 
-    def log(self, viewer: newton.viewer.ViewerBase, body: CageBody, state: newton.State) -> None:
+    def log(self, viewer: newton.viewer.ViewerBase, body: SimulatedBody, state: newton.State) -> None:
         """Log one body's skin and caps as two meshes over the same points; a plane body has no caps."""
         points = body.surface_points(state)
         skin, caps = self._index_buffers(body)
@@ -41,7 +41,7 @@ class SurfaceViewer:
             hidden=hidden,
         )
 
-    def _index_buffers(self, body: CageBody) -> tuple[wp.array, wp.array]:
+    def _index_buffers(self, body: SimulatedBody) -> tuple[wp.array, wp.array]:
         kept = self._indices.get(body.label)
         if kept is None or kept[0] is not body.surface:
             is_cap = np.asarray(body.surface.triangle_cap) >= 0

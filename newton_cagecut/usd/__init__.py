@@ -4,6 +4,7 @@
 
 from .animation import AnimationWriter
 from .body_frame import BodyFrame
+from .layers import checked_path
 from .mesh_data import MeshData
 from .read import read_cage, read_mesh, read_surface
 from .validate import validate_animation
@@ -13,6 +14,7 @@ __all__ = [
     "AnimationWriter",
     "BodyFrame",
     "MeshData",
+    "checked_path",
     "read_cage",
     "read_mesh",
     "read_surface",

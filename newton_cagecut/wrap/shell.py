@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..cage.checks.inside import simplex_distances
+from ..cage import simplex_distances
 from ..geometry import nearest_on_edges, nearest_on_triangles, winding_numbers
 from .inequalities import Inequalities
 from .sampling import triangle_grid

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...geometry import PolygonMesh
 from . import crossings as intersection
-from . import segments as segment_checks
+from . import segment_checks
 
 if TYPE_CHECKING:
     from ..cage import Cage

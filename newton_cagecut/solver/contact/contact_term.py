@@ -18,7 +18,7 @@ import warp as wp
 from . import contact_kernels as kernels
 
 if TYPE_CHECKING:
-    from ..body import CageBody
+    from ..simulated_body import SimulatedBody
 
 
 class ContactTerm:
@@ -28,7 +28,7 @@ class ContactTerm:
         body: The body, with surface particles.
     """
 
-    def __init__(self, body: CageBody) -> None:
+    def __init__(self, body: SimulatedBody) -> None:
         self._body = body
         count = body.capacity.surface_points
         with wp.ScopedDevice(body.device):

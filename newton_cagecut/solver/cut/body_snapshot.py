@@ -9,14 +9,16 @@ and states that belong to the body, and where its cuts were.
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Sequence
+from dataclasses import replace
 
 import newton
 import warp as wp
 
-from ..body import CageBody
+from ...harmonic import Journal
+from ..simulated_body import SimulatedBody
 from .body_cut import BodyCut
+from .edited_states import checked_states
 
 
 class BodySnapshot:
@@ -28,32 +30,38 @@ class BodySnapshot:
         cuts: Cuts of the body that are to go on from where they are.
     """
 
-    def __init__(self, body: CageBody, states: Sequence[newton.State], cuts: Sequence[BodyCut]) -> None:
-        self._body, self._surface = body, body.surface
+    def __init__(self, body: SimulatedBody, states: Sequence[newton.State], cuts: Sequence[BodyCut]) -> None:
+        self._body, self._states = body, checked_states(body, states)
+        self._surface, self._definition, self._quadrature = body.surface, body.definition, body.quadrature
         self._coordinates = body.coordinates.snapshot()
-        self._quadrature = copy.deepcopy(body._quadrature)
-        self._arrays = [(array, wp.clone(array)) for array in self._changing(states)]
+        self._arrays = [(array, wp.clone(array)) for array in body.edited_arrays(self._states)]
         self._cuts = [(cut, cut.cut, cut._surface_cut) for cut in cuts]
 
-    def _changing(self, states: Sequence[newton.State]) -> list[wp.array]:
-        body = self._body
-        arrays = [body.rest, body.fixed, body.vertex_count]
-        parts = [body.vertices, body.surface_particles] if body.has_contact else [body.vertices]
-        arrays += [array[part] for s in states for array in (s.particle_q, s.particle_qd) for part in parts]
-        if body.has_contact:
-            arrays.append(body.model.particle_flags[body.surface_particles])
-        if body.system is not None:
-            arrays.append(body.system.volumes)
-        return arrays
+    @property
+    def label(self) -> str:
+        """Name of the body."""
+        return self._body.label
+
+    @property
+    def states(self) -> tuple[newton.State, ...]:
+        """The states whose rows are brought back."""
+        return self._states
 
     def restore(self) -> None:
-        """Bring everything back; it can be done any number of times."""
+        """Bring everything back, all or nothing; it can be done any number of times."""
         body = self._body
-        body.coordinates.restore(self._coordinates)
-        body._quadrature = copy.deepcopy(self._quadrature)
-        body.set_surface(self._surface)
-        for array, kept in self._arrays:
-            wp.copy(array, kept)
-        for cut, cage_cut, surface_cut in self._cuts:
-            cut.cut, cut._surface_cut = cage_cut, surface_cut
-        body.refresh()
+        body.require_own_edits()
+        with Journal() as journal:
+            for cut, _, _ in self._cuts:
+                journal.keep_attributes(cut, "cut", "_surface_cut")
+            body.keep(journal, self._states)
+            body.coordinates.restore(self._coordinates, journal=journal)
+            for cut, cage_cut, surface_cut in self._cuts:
+                cut.cut, cut._surface_cut = cage_cut, surface_cut
+            body.surface, body.quadrature = self._surface, self._quadrature
+            for array, kept in self._arrays:
+                wp.copy(array, kept)
+            last = body.definition.last_edit
+            body.definition = replace(self._definition, last_edit=last)
+            body.model.cagecut.definition[body.row] = body.definition
+            body.refresh()

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 from ...harmonic import UpdateStats
@@ -17,7 +18,7 @@ class CutReport:
     Args:
         depth: Depth of the cut from where the blade first touched [m].
         complete: Whether nothing is left to cut.
-        components: Pieces that the cage is in.
+        piece_count: Pieces that the body is in.
         separated: Whether a piece came off in this step.
         vertices_created: Cage vertices that are new.
         points_created: Surface points that are new.
@@ -29,7 +30,7 @@ class CutReport:
 
     depth: float
     complete: bool
-    components: int
+    piece_count: int
     separated: bool
     vertices_created: int
     points_created: int
@@ -37,6 +38,11 @@ class CutReport:
     seconds: dict[str, float]
     energy_before: float
     energy_after: float
+
+    @property
+    def components(self) -> int:
+        """Earlier name of ``piece_count``; a cage's components are its connected sets of faces, cavities included."""
+        return self.piece_count
 
     @property
     def energy_injected(self) -> float:
@@ -47,3 +53,22 @@ class CutReport:
     def total_seconds(self) -> float:
         """Time of all parts [s]."""
         return sum(self.seconds.values())
+
+
+class Clock:
+    """Times of the parts of an advance."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        """Time of each part so far [s]."""
+        self._last = time.perf_counter()
+
+    def lap(self, part: str) -> None:
+        """Add the time since the last lap to a part.
+
+        Args:
+            part: Name of the part.
+        """
+        now = time.perf_counter()
+        self.seconds[part] = self.seconds.get(part, 0.0) + now - self._last
+        self._last = now

@@ -13,8 +13,7 @@ import numpy as np
 
 from ..cage import Cage, check_inside, mesh_clearance
 from ..surface import Surface
-from ..usd import write_cage
-from ..usd.layers import checked_path
+from ..usd import checked_path, write_cage
 from .reading import read_any_mesh
 from .wrap import checked_face_count, checked_offset, wrap_cage
 
