@@ -87,7 +87,7 @@ def test_extrude_every_face(name):
         assert edit.retired_walls.tolist() == [face]
         assert grown.face_wall[face] == len(cage.walls)
         assert crossings(grown) == 0
-        assert len(edit.components) == cage.piece_count
+        assert len(edit.pieces) == cage.piece_count
         assert not edit.separated
 
 
