@@ -58,7 +58,7 @@ class Domain:
         cage: The cage; it may have cuts already.
         quads: "mean_value" or "harmonic": how convex quads interpolate.
         distance: "grid" or "all": how the nearest wall is found.
-        grid_resolution: Cells of the grid along the cage's longest side.
+        grid_resolution: Cells of the grid along the cage's longest side; by default, what suits the number of walls.
         device: Where to put them.
         walls: The walls as edits have left them, of which a cut cage does not tell all; by default those of its faces.
     """
@@ -70,7 +70,7 @@ class Domain:
         quads: str,
         distance: str,
         device: wp.context.Device,
-        grid_resolution: int = 64,
+        grid_resolution: int | None = None,
         walls: Walls | None = None,
     ) -> None:
         self.cage = cage
