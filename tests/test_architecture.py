@@ -35,6 +35,7 @@ LEVELS = {
         ("point_checks",),
         ("point_change",),
         ("faces",),
+        ("fit",),
         ("resolve",),
         ("cache",),
         ("coordinates",),

@@ -172,5 +172,5 @@ def test_solid_bodies_carry_nothing_for_the_plane():
     """A solid body has no normal, a plane one has."""
     body = Body(3)
     assert not body.system.is_plane
-    assert body.system._normal is None
+    assert body.system.arrays.normal is None
     assert Body(2).system.is_plane

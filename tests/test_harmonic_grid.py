@@ -11,7 +11,7 @@ import warp as wp
 from benchmarks.topology import armed_ball
 from harmonic_shapes import MAKERS, assert_identical, crossing_blade, interior_points, random_blade, snapshot
 from newton_cagecut.cage import Cut
-from newton_cagecut.cage.checks.inside import simplex_distances
+from newton_cagecut.geometry import simplex_distances
 from newton_cagecut.harmonic import HarmonicCoordinates
 from newton_cagecut.harmonic.cache.domain import Domain
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import warp as wp
 
+from .arrays import BodyArrays, LinearSystem, StepArrays
 from .step_kernels import gather
 
 wp.set_module_options({"enable_backward": False})
@@ -22,47 +23,30 @@ GREATEST_CHANGE = wp.constant(1.0)
 
 
 @wp.kernel(enable_backward=False)
-def find_velocities(
-    velocities: wp.array[wp.vec3],
-    change: wp.array[wp.vec3],
-    predicted: wp.array[wp.vec3],
-):
+def find_velocities(velocities: wp.array[wp.vec3], step: StepArrays, system: LinearSystem):
     """Velocities after the solve."""
     i = wp.tid()
-    predicted[i] = velocities[i] + change[i]
+    step.predicted[i] = velocities[i] + system.solution[i]
 
 
 @wp.kernel(enable_backward=False)
-def find_rates(
-    dt: float,
-    predicted: wp.array[wp.vec3],
-    gradients: wp.array2d[wp.vec3],
-    anchors: wp.array[int],
-    vertex_count: wp.array[int],
-    rates: wp.array[float],
-):
+def find_rates(dt: float, body: BodyArrays, step: StepArrays):
     """Size of the change of F at each quadrature point in this step."""
     q = wp.tid()
-    change = gather(q, predicted, gradients, anchors[q], vertex_count[0])
-    rates[q] = dt * wp.sqrt(wp.ddot(change, change))
+    change = gather(q, step.predicted, body)
+    step.rates[q] = dt * wp.sqrt(wp.ddot(change, change))
 
 
 @wp.kernel(enable_backward=False)
-def find_limit(
-    rates: wp.array[float],
-    predicted: wp.array[wp.vec3],
-    vertex_mass: wp.array[float],
-    vertex_count: wp.array[int],
-    limit: wp.array[wp.vec4],
-):
+def find_limit(body: BodyArrays, step: StepArrays):
     """Mean velocity, and the factor on velocities relative to it that keeps changes of F small; one thread block."""
     thread = wp.tid()
     greatest_part = float(0.0)
-    for q in range(thread, rates.shape[0], wp.block_dim()):
-        greatest_part = wp.max(greatest_part, rates[q])
+    for q in range(thread, step.rates.shape[0], wp.block_dim()):
+        greatest_part = wp.max(greatest_part, step.rates[q])
     momentum_part = wp.vec4()
-    for i in range(thread, vertex_count[0], wp.block_dim()):
-        v, m = predicted[i], vertex_mass[i]
+    for i in range(thread, body.vertex_count[0], wp.block_dim()):
+        v, m = step.predicted[i], body.vertex_mass[i]
         momentum_part += wp.vec4(m * v[0], m * v[1], m * v[2], m)
     greatest = wp.tile_max(wp.tile(greatest_part))[0]
     momentum = wp.tile_sum(wp.tile(momentum_part, preserve_type=True))[0]
@@ -71,7 +55,7 @@ def find_limit(
         if greatest > GREATEST_CHANGE:
             factor = GREATEST_CHANGE / greatest
         mass = momentum[3]
-        limit[0] = wp.vec4(momentum[0] / mass, momentum[1] / mass, momentum[2] / mass, factor)
+        step.limit[0] = wp.vec4(momentum[0] / mass, momentum[1] / mass, momentum[2] / mass, factor)
 
 
 @wp.kernel(enable_backward=False)
@@ -79,10 +63,8 @@ def finish_step(
     dt: float,
     positions: wp.array[wp.vec3],
     velocities: wp.array[wp.vec3],
-    predicted: wp.array[wp.vec3],
-    limit: wp.array[wp.vec4],
-    fixed: wp.array[int],
-    vertex_count: wp.array[int],
+    body: BodyArrays,
+    step: StepArrays,
     positions_out: wp.array[wp.vec3],
     velocities_out: wp.array[wp.vec3],
 ):
@@ -90,11 +72,12 @@ def finish_step(
     i = wp.tid()
     velocity = velocities[i]
     position = positions[i]
-    if i < vertex_count[0]:
-        velocity = predicted[i]
-        factor = limit[0][3]
-        if factor < 1.0 and fixed[i] == 0:
-            mean = wp.vec3(limit[0][0], limit[0][1], limit[0][2])
+    if i < body.vertex_count[0]:
+        velocity = step.predicted[i]
+        limit = step.limit[0]
+        factor = limit[3]
+        if factor < 1.0 and body.fixed[i] == 0:
+            mean = wp.vec3(limit[0], limit[1], limit[2])
             velocity = mean + factor * (velocity - mean)
         position += dt * velocity
     velocities_out[i] = velocity

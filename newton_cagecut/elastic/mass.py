@@ -11,6 +11,9 @@ from __future__ import annotations
 
 import warp as wp
 
+from .arrays import BodyArrays
+from .launching import record
+
 wp.set_module_options({"enable_backward": False})
 
 LUMPED = wp.constant(wp.float64(1.0e-3))
@@ -18,56 +21,55 @@ LUMPED = wp.constant(wp.float64(1.0e-3))
 
 
 @wp.kernel(enable_backward=False)
-def find_anchors(weights: wp.array2d[float], vertex_count: wp.array[int], anchors: wp.array[int]):
+def find_anchors(body: BodyArrays):
     """The vertex of greatest weight at each quadrature point: displacements are taken relative to its own."""
     q = wp.tid()
     best = int(0)
-    for j in range(1, vertex_count[0]):
-        if weights[q, j] > weights[q, best]:
+    for j in range(1, body.vertex_count[0]):
+        if body.weights[q, j] > body.weights[q, best]:
             best = j
-    anchors[q] = best
+    body.anchors[q] = best
 
 
 @wp.kernel(enable_backward=False)
-def assemble_mass(
-    weights: wp.array2d[float],
-    stabilizing: wp.array2d[float],
-    volumes: wp.array[float],
-    material: wp.array[wp.vec4d],
-    vertex_count: wp.array[int],
-    mass: wp.array2d[float],
-):
+def assemble_mass(body: BodyArrays):
     """Consistent mass matrix with the stabilising inertia; zero in the spare rows and columns."""
     i, j = wp.tid()
     total = wp.float64(0.0)
-    if i < vertex_count[0] and j < vertex_count[0]:
-        total = wp.float64(stabilizing[i, j])
-        for q in range(weights.shape[0]):
-            total += wp.float64(volumes[q]) * (wp.float64(weights[q, i]) * wp.float64(weights[q, j]))
-    mass[i, j] = float(material[0][3] * total)
+    if i < body.vertex_count[0] and j < body.vertex_count[0]:
+        total = wp.float64(body.stabilizing_mass[i, j])
+        for q in range(body.volumes.shape[0]):
+            product = wp.float64(body.weights[q, i]) * wp.float64(body.weights[q, j])
+            total += wp.float64(body.volumes[q]) * product
+    body.mass[i, j] = float(body.material[0][3] * total)
 
 
 @wp.kernel(enable_backward=False)
-def lump_mass(
-    volumes: wp.array[float],
-    material: wp.array[wp.vec4d],
-    vertex_count: wp.array[int],
-    mass: wp.array2d[float],
-    vertex_mass: wp.array[float],
-):
+def lump_mass(body: BodyArrays):
     """Move the lumped share of each row to the diagonal, and note the row's sum."""
     i = wp.tid()
-    vertex_mass[i] = 0.0
-    if i >= vertex_count[0]:
+    body.vertex_mass[i] = 0.0
+    if i >= body.vertex_count[0]:
         return
     total = wp.float64(0.0)
-    for q in range(volumes.shape[0]):
-        total += wp.float64(volumes[q])
-    least = LUMPED * material[0][3] * total / wp.float64(vertex_count[0])
+    for q in range(body.volumes.shape[0]):
+        total += wp.float64(body.volumes[q])
+    least = LUMPED * body.material[0][3] * total / wp.float64(body.vertex_count[0])
     row = wp.float64(0.0)
-    for j in range(vertex_count[0]):
-        row += wp.float64(mass[i, j])
-        mass[i, j] = float((wp.float64(1.0) - LUMPED) * wp.float64(mass[i, j]))
+    for j in range(body.vertex_count[0]):
+        entry = wp.float64(body.mass[i, j])
+        row += entry
+        body.mass[i, j] = float((wp.float64(1.0) - LUMPED) * entry)
     lumped = LUMPED * wp.max(row, least)
-    mass[i, i] = float(wp.float64(mass[i, i]) + lumped)
-    vertex_mass[i] = float((wp.float64(1.0) - LUMPED) * row + lumped)
+    body.mass[i, i] = float(wp.float64(body.mass[i, i]) + lumped)
+    body.vertex_mass[i] = float((wp.float64(1.0) - LUMPED) * row + lumped)
+
+
+def record_masses(body: BodyArrays) -> tuple[wp.Launch, ...]:
+    """The launches that bring anchors and masses up to date, in their order."""
+    capacity, points, device = body.rest.shape[0], body.volumes.shape[0], body.rest.device
+    return (
+        record(find_anchors, points, [body], device),
+        record(assemble_mass, (capacity, capacity), [body], device),
+        record(lump_mass, capacity, [body], device),
+    )

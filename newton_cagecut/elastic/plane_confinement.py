@@ -13,6 +13,8 @@ from __future__ import annotations
 
 import warp as wp
 
+from .arrays import BodyArrays, LinearSystem, StepArrays
+
 wp.set_module_options({"enable_backward": False})
 
 NEGLIGIBLE = wp.constant(wp.float64(1.0e-6))
@@ -35,42 +37,37 @@ def inverse_in_plane(matrix: wp.mat33d, normal: wp.vec3d) -> wp.mat33d:
 
 
 @wp.kernel(enable_backward=False)
-def find_normal(rotation: wp.array[wp.mat33], normal: wp.array[wp.vec3d]):
+def find_normal(body: BodyArrays):
     """Unit normal of the plane: the third axis of the rest frame, in the world."""
-    axis = wp.normalize(wp.mat33d(rotation[0]) * wp.vec3d(wp.float64(0.0), wp.float64(0.0), wp.float64(1.0)))
+    axis = wp.normalize(wp.mat33d(body.rotation[0]) * wp.vec3d(wp.float64(0.0), wp.float64(0.0), wp.float64(1.0)))
     for k in range(3):
         if wp.abs(axis[k]) < NEGLIGIBLE:
             axis[k] = wp.float64(0.0)
-    normal[0] = wp.normalize(axis)
+    body.normal[0] = wp.normalize(axis)
 
 
 @wp.kernel(enable_backward=False)
-def confine_start(normal: wp.array[wp.vec3d], change: wp.array[wp.vec3], predicted: wp.array[wp.vec3]):
+def confine_start(body: BodyArrays, step: StepArrays, system: LinearSystem):
     """Take the first guess of a step, and the velocities that it predicts, into the plane."""
     i = wp.tid()
-    change[i] = in_plane(change[i], normal[0])
-    predicted[i] = in_plane(predicted[i], normal[0])
+    system.solution[i] = in_plane(system.solution[i], body.normal[0])
+    step.predicted[i] = in_plane(step.predicted[i], body.normal[0])
 
 
 @wp.kernel(enable_backward=False)
-def confine_velocities(normal: wp.array[wp.vec3d], velocities: wp.array[wp.vec3]):
-    """Take velocities into the plane."""
+def confine_velocities(body: BodyArrays, step: StepArrays):
+    """Take the velocities after the solve into the plane."""
     i = wp.tid()
-    velocities[i] = in_plane(velocities[i], normal[0])
+    step.predicted[i] = in_plane(step.predicted[i], body.normal[0])
 
 
 @wp.kernel(enable_backward=False)
-def confine_end(
-    normal: wp.array[wp.vec3d],
-    rest: wp.array[wp.vec3],
-    vertex_count: wp.array[int],
-    positions: wp.array[wp.vec3],
-    velocities: wp.array[wp.vec3],
-):
+def confine_end(body: BodyArrays, positions: wp.array[wp.vec3], velocities: wp.array[wp.vec3]):
     """Take the velocities of a step's end into the plane, and put the positions back to it."""
     i = wp.tid()
-    if i < vertex_count[0]:
-        velocities[i] = in_plane(velocities[i], normal[0])
+    if i < body.vertex_count[0]:
+        normal = body.normal[0]
+        velocities[i] = in_plane(velocities[i], normal)
         exact = wp.vec3d(positions[i])
-        height = wp.dot(normal[0], exact - wp.vec3d(rest[i]))
-        positions[i] = wp.vec3(exact - height * normal[0])
+        height = wp.dot(normal, exact - wp.vec3d(body.rest[i]))
+        positions[i] = wp.vec3(exact - height * normal)

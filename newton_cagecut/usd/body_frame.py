@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .layers import flat_faces
-from .mesh_data import check_mesh
+from .mesh_data import check_mesh, checked_points
 from .outline import outline_loops
 
 
@@ -53,7 +53,7 @@ class BodyFrame:
         Raises:
             ValueError: The arrays are empty, not finite or do not fit together.
         """
-        points = _points(f"body {self.name}: points", self.points)
+        points = checked_points(f"body {self.name}: points", self.points)
         triangles = np.asarray(self.triangles, dtype=np.int32)
         if triangles.ndim != 2 or triangles.shape[1] != 3:
             raise ValueError(f"body {self.name}: triangles must have shape (m, 3), got {triangles.shape}")
@@ -62,24 +62,16 @@ class BodyFrame:
         if cap.shape != (len(triangles),):
             raise ValueError(f"body {self.name}: triangle_cap must have shape ({len(triangles)},), got {cap.shape}")
         rest_points = (
-            points if self.rest_points is None else _points(f"body {self.name}: rest_points", self.rest_points)
+            points if self.rest_points is None else checked_points(f"body {self.name}: rest_points", self.rest_points)
         )
         if len(rest_points) != len(points):
             raise ValueError(f"body {self.name}: rest_points must have shape {points.shape}, got {rest_points.shape}")
         cage_points = self.cage_points
         if cage_points is not None:
-            cage_points = _points(f"body {self.name}: cage_points", cage_points)
+            cage_points = checked_points(f"body {self.name}: cage_points", cage_points)
             if self.has_plane_cage:
                 outline_loops(f"the cage of body {self.name}", self.cage_faces, len(cage_points))
             else:
                 check_mesh(f"the cage of body {self.name}", cage_points, *flat_faces(self.cage_faces))
         surface = {"points": points, "triangles": triangles, "triangle_cap": cap, "rest_points": rest_points}
         return replace(self, **surface, cage_points=cage_points)
-
-
-def _points(label: str, values: np.ndarray) -> np.ndarray:
-    """Return ``values`` as float64 of shape ``(n, 3)``."""
-    points = np.asarray(values, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise ValueError(f"{label} must have shape (n, 3), got {points.shape}")
-    return points

@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from ...geometry import lifted
+from ...geometry import lifted, triangle_normals, units
 from .frame import UnitFrame
 
 wp.set_module_options({"enable_backward": False})
@@ -227,7 +227,7 @@ def _wall_rows(corners: np.ndarray, normals: np.ndarray) -> dict[str, np.ndarray
         corners = lifted(corners[:, [0, 1, 0]])
     else:
         corners = _wound(corners, normals)
-        inward = [_unit(np.cross(normals, corners[:, (k + 1) % 3] - corners[:, k])) for k in range(3)]
+        inward = [units(np.cross(normals, corners[:, (k + 1) % 3] - corners[:, k])) for k in range(3)]
     rows = {"normal": lifted(normals).astype(np.float32)}
     for k in range(3):
         rows[f"corner_{k}"] = corners[:, k].astype(np.float32)
@@ -237,16 +237,11 @@ def _wall_rows(corners: np.ndarray, normals: np.ndarray) -> dict[str, np.ndarray
 
 def _segment_ends(corners: np.ndarray) -> list[np.ndarray]:
     """Directions into segments from their ends, which bound them as edges bound a triangle."""
-    along = lifted(_unit(corners[:, 1] - corners[:, 0]))
+    along = lifted(units(corners[:, 1] - corners[:, 0]))
     return [np.zeros_like(along), -along, along]
 
 
 def _wound(corners: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """Triangles of which the winding agrees with the wall's normal, so that edge normals point inward."""
-    area = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), normals)
+    area = np.einsum("ij,ij->i", triangle_normals(corners), normals)
     return np.where((area < 0.0)[:, None, None], corners[:, ::-1], corners)
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return vectors / np.where(length > 0.0, length, 1.0)

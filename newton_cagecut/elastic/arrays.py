@@ -1,0 +1,182 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Warp structs of a reduced system: what a body is between edits, what a step works on, and what it solves.
+
+Each holds the arrays of one body, so that a kernel takes a few structs and not a dozen arrays.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import warp as wp
+
+from .stiffness import Stiffness
+
+
+@wp.struct
+class BodyArrays:
+    """What a body is between edits; a step only reads it. The number of vertices includes the spare ones."""
+
+    vertex_count: wp.array[int]
+    """Number of vertices in use, shape (1,)."""
+    fixed: wp.array[int]
+    """Nonzero for vertices that keep their velocity, one a vertex."""
+    rest: wp.array[wp.vec3]
+    """Rest positions, one a vertex [m]."""
+    rotation: wp.array[wp.mat33]
+    """Rotation from the gradients' frame to that of the rest positions, shape (1,)."""
+    normal: wp.array[wp.vec3d]
+    """Unit normal of a plane body's plane, shape (1,); none of a solid one."""
+    material: wp.array[wp.vec4d]
+    """Lame's constants mu and lambda [Pa], damping [s] and density [kg/m^3], shape (1,)."""
+    weights: wp.array2d[float]
+    """Weights at the quadrature points, one a point and vertex."""
+    gradients: wp.array2d[wp.vec3]
+    """Gradients of the weights, one a point and vertex [1/m]."""
+    volumes: wp.array[float]
+    """Volumes, one a point [m^3]."""
+    anchors: wp.array[int]
+    """The vertex of greatest weight, one a point."""
+    mass: wp.array2d[float]
+    """Mass matrix, one a pair of vertices [kg]."""
+    vertex_mass: wp.array[float]
+    """Sums of the mass matrix's rows, one a vertex [kg]."""
+    stabilizing_stiffness: wp.array2d[float]
+    """Stabilising stiffness over mu, one a pair of vertices [m]."""
+    stabilizing_mass: wp.array2d[float]
+    """Stabilising mass over the density, one a pair of vertices [m^3]."""
+
+
+@wp.struct
+class StepArrays:
+    """What a step works on."""
+
+    scales: wp.array[wp.float64]
+    """Factors of forces and of stiffness in the system, shape (2,): the time step [s], and it times itself and the
+    damping [s^2]."""
+    displacement: wp.array[wp.vec3]
+    """Displacements from rest before the step, one a vertex [m]."""
+    lag: wp.array[wp.vec3]
+    """What the first guess lacks of free fall, one a vertex [m/s]."""
+    predicted: wp.array[wp.vec3]
+    """Velocities with the first guess, later those after the solve, one a vertex [m/s]."""
+    stiffnesses: wp.array[Stiffness]
+    """Stiffness times volume and time scale, one a point."""
+    tensions: wp.array[wp.mat33]
+    """Stress, or its change with a direction, times volume and time scale, one a point."""
+    rates: wp.array[float]
+    """Size of the change of F in the step, one a point."""
+    limit: wp.array[wp.vec4]
+    """Mean velocity [m/s], and the factor on velocities relative to it, shape (1,)."""
+
+
+@wp.struct
+class LinearSystem:
+    """A symmetric positive definite system of 3-vectors, one a row; what the matrix does is the solver's to ask.
+
+    Rows from the count on, and fixed ones, keep their part of ``solution``.
+    """
+
+    row_count: wp.array[int]
+    """Number of rows in use, shape (1,)."""
+    fixed: wp.array[int]
+    """Nonzero for rows that keep their value."""
+    normal: wp.array[wp.vec3d]
+    """Unit normal of the plane that changes of the solution stay in, shape (1,); none if they are free."""
+    solution: wp.array[wp.vec3]
+    """The first guess, then the solution."""
+    residual: wp.array[wp.vec3]
+    """Right-hand side minus matrix times ``solution``."""
+    blocks: wp.array[wp.mat33]
+    """The matrix's diagonal blocks."""
+
+
+def make_body_arrays(
+    rest: wp.array,
+    weights: wp.array,
+    gradients: wp.array,
+    volumes: wp.array | np.ndarray,
+    vertex_count: wp.array,
+    *,
+    fixed: wp.array | None,
+    rotation: wp.array | None,
+    plane: bool,
+) -> BodyArrays:
+    """The arrays of a body: those given, in place, and zeros for the others; see ``ReducedSystem``.
+
+    Raises:
+        TypeError: If an array has the wrong type.
+        ValueError: If an array has the wrong shape or lies on another device than ``rest``.
+    """
+    capacity, points = rest.shape[0], weights.shape[0]
+    body = BodyArrays()
+    with wp.ScopedDevice(rest.device):
+        given = {
+            "rest": rest,
+            "weights": weights,
+            "gradients": gradients,
+            "volumes": volumes if isinstance(volumes, wp.array) else wp.array(volumes, dtype=float),
+            "vertex_count": vertex_count,
+            "fixed": fixed if fixed is not None else wp.zeros(capacity, dtype=int),
+            "rotation": rotation if rotation is not None else wp.array([np.eye(3)], dtype=wp.mat33),
+        }
+        _check(given)
+        for name, array in given.items():
+            setattr(body, name, array)
+        if plane:
+            body.normal = wp.zeros(1, dtype=wp.vec3d)
+        body.material = wp.zeros(1, dtype=wp.vec4d)
+        body.anchors = wp.zeros(points, dtype=int)
+        body.vertex_mass = wp.zeros(capacity, dtype=float)
+        for name in ("mass", "stabilizing_stiffness", "stabilizing_mass"):
+            setattr(body, name, wp.zeros((capacity, capacity), dtype=float))
+    return body
+
+
+def make_step_arrays(body: BodyArrays) -> StepArrays:
+    """Scratch for the steps of a body."""
+    capacity, points = body.rest.shape[0], body.volumes.shape[0]
+    step = StepArrays()
+    with wp.ScopedDevice(body.rest.device):
+        step.scales = wp.zeros(2, dtype=wp.float64)
+        for name in ("displacement", "lag", "predicted"):
+            setattr(step, name, wp.zeros(capacity, dtype=wp.vec3))
+        step.stiffnesses = wp.zeros(points, dtype=Stiffness)
+        step.tensions = wp.zeros(points, dtype=wp.mat33)
+        step.rates = wp.zeros(points, dtype=float)
+        step.limit = wp.zeros(1, dtype=wp.vec4)
+    return step
+
+
+def make_linear_system(row_count: wp.array, fixed: wp.array, normal: wp.array | None = None) -> LinearSystem:
+    """A system with as many rows as ``fixed`` has, all zero."""
+    capacity = fixed.shape[0]
+    system = LinearSystem()
+    system.row_count, system.fixed, system.normal = row_count, fixed, normal
+    with wp.ScopedDevice(fixed.device):
+        system.solution, system.residual = (wp.zeros(capacity, dtype=wp.vec3) for _ in range(2))
+        system.blocks = wp.zeros(capacity, dtype=wp.mat33)
+    return system
+
+
+def _check(given: dict[str, wp.array]) -> None:
+    """Check types, shapes and devices of the arrays of a body."""
+    capacity, points, device = given["rest"].shape[0], given["weights"].shape[0], given["rest"].device
+    expected = {
+        "rest": (wp.vec3, (capacity,)),
+        "weights": (wp.float32, (points, capacity)),
+        "gradients": (wp.vec3, (points, capacity)),
+        "volumes": (wp.float32, (points,)),
+        "vertex_count": (wp.int32, (1,)),
+        "fixed": (wp.int32, (capacity,)),
+        "rotation": (wp.mat33, (1,)),
+    }
+    for name, (dtype, shape) in expected.items():
+        array = given[name]
+        if array.dtype != dtype:
+            raise TypeError(f"ReducedSystem {name} has the type {array.dtype.__name__}; it must be {dtype.__name__}.")
+        if array.shape != shape:
+            raise ValueError(f"ReducedSystem {name} has the shape {array.shape}; it must be {shape}.")
+        if array.device != device:
+            raise ValueError(f"ReducedSystem {name} lies on {array.device}; rest lies on {device}.")
