@@ -27,13 +27,15 @@ and 2.9 microseconds with 16, 32 and 64 cells.
 
 from __future__ import annotations
 
+import copy
+
 import numpy as np
 import warp as wp
 
 from ..launch import launch, launch_blocks
 from .candidates import BLOCK_SIDE, Reach, fill_cells, fill_merged, measure_cells, measure_new
 from .cells import compacted, copied, single_cell, uniform_cells, with_counts
-from .wall_triangles import Walls
+from .walls import Walls
 
 _COARSEST = 4
 
@@ -62,26 +64,29 @@ class CandidateGrid:
         """Bytes on the device."""
         return 4 * (2 * self.cells.first.size + self.cells.items.size + self._nearest.size)
 
-    def rebuild(self) -> None:
-        """Index all walls anew, over the box that they take now: after gates have opened a way out of the old one."""
-        self._build()
+    def merged(self, walls: Walls, first_new: int) -> CandidateGrid:
+        """This grid with further triangles in the cells that they can reach; it is not written to itself.
 
-    def merge(self, first_new: int) -> None:
-        """Add the triangles from ``first_new`` on, all of one wall, to the cells that they can reach."""
-        old, device = self.cells, self.walls.device
-        blocks = self._reachable_blocks(first_new)
+        Args:
+            walls: The walls as they are now.
+            first_new: The first triangle that is not in the grid; those from it on are all of one wall.
+        """
+        grid, device = copy.copy(self), walls.device
+        grid.walls = walls
+        blocks = grid._reachable_blocks(first_new)
         if not len(blocks):
-            return
+            return grid
         cell_count = len(blocks) * BLOCK_SIDE**3
         counts = wp.empty(cell_count, dtype=wp.int32, device=device)
         reaches = wp.empty(cell_count, dtype=Reach, device=device)
-        new = [wp.array(blocks, dtype=wp.vec3i, device=device), self.walls.data, first_new]
-        launch_blocks(measure_new, cell_count, [*new, old, self._nearest, reaches, counts], device=device)
+        new = [wp.array(blocks, dtype=wp.vec3i, device=device), walls.data, first_new]
+        launch_blocks(measure_new, cell_count, [*new, self.cells, self._nearest, reaches, counts], device=device)
         wp.utils.array_scan(counts, counts, inclusive=True)
-        cells, nearest = copied(old, int(counts[-1:].numpy()[0])), wp.clone(self._nearest)
-        launch_blocks(fill_merged, cell_count, [*new, counts, old, cells, reaches, nearest], device=device)
-        self._nearest = nearest
-        self.cells = cells if cells.items.size <= _MOST_GROWTH * self._built_size else compacted(cells)
+        cells = copied(self.cells, int(counts[-1:].numpy()[0]))
+        grid._nearest = wp.clone(self._nearest)
+        launch_blocks(fill_merged, cell_count, [*new, counts, self.cells, cells, reaches, grid._nearest], device=device)
+        grid.cells = cells if cells.items.size <= _MOST_GROWTH * self._built_size else compacted(cells)
+        return grid
 
     def _reachable_blocks(self, first_new: int) -> np.ndarray:
         """First cells of the blocks in which new triangles may be nearest somewhere, shape (block_count, 3)."""
@@ -92,14 +97,6 @@ class CandidateGrid:
         away = np.linalg.norm(np.maximum(np.maximum(low - center, center - high), 0.0), axis=1)
         reach = self._farthest.reshape(-1) + self.cells.diagonal + 3.0**0.5 * half + 1.0e-3
         return corner[away <= reach].astype(np.int32)
-
-    def state(self) -> tuple:
-        """The grid as it is; merging replaces what this refers to, and never writes to it."""
-        return self.cells, self._nearest, self._built_size, self._farthest
-
-    def restore(self, state: tuple) -> None:
-        """Forget the walls that were merged since a state."""
-        self.cells, self._nearest, self._built_size, self._farthest = state
 
     def _build(self) -> None:
         device = self.walls.device
