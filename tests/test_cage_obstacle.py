@@ -70,8 +70,8 @@ def test_insert_every_shape(name):
     assert edit.swept_wall.tolist() == list(range(first, result.face_count))
     assert len(edit.retired_walls) == 0
     assert result.component_count == 1 + obstacle.component_count
-    assert result.piece_count == len(edit.components) == 1 + enclosed
-    assert sum(piece.volume for piece in edit.components) == pytest.approx(result.volume)
+    assert result.piece_count == len(edit.pieces) == 1 + enclosed
+    assert sum(piece.volume for piece in edit.pieces) == pytest.approx(result.volume)
     assert edit.separated == (enclosed > 0)
     inside = np.random.default_rng(0).uniform(0.5, 3.5, (200, cage.dimension))
     np.testing.assert_array_equal(result.contains(inside), ~obstacle.contains(inside))
@@ -100,7 +100,7 @@ def test_a_hollow_obstacle_encloses_a_piece(dimension):
     edit = cage.insert(_placed(_hollow(dimension), [2.5, 2.5, 2.5]))
     check_edit(edit, 1.0 - 3.0**dimension)
     assert edit.separated
-    assert [piece.volume for piece in edit.components] == pytest.approx([5.0**dimension - 3.0**dimension, 1.0])
+    assert [piece.volume for piece in edit.pieces] == pytest.approx([5.0**dimension - 3.0**dimension, 1.0])
     points = np.array([[2.5, 2.5, 2.5], [1.5, 2.5, 2.5], [0.5, 2.5, 2.5]])[:, :dimension]
     assert edit.cage.piece_of(points).tolist() == [1, -1, 0]
     two = cage.insert(_placed(_two(dimension), [2.5, 2.5, 2.5]))

@@ -22,7 +22,7 @@ def test_components_of_an_edit():
     seen = []
     for depth in (0.5, 1.2, 1.8, 2.5, 3.2):
         edit = cut.advance(to=depth)
-        pieces = edit.components
+        pieces = edit.pieces
         seen.append((len(pieces), edit.separated))
         assert sorted(np.concatenate([piece.vertices for piece in pieces])) == list(range(edit.cage.vertex_count))
         assert sorted(np.concatenate([piece.faces for piece in pieces])) == list(range(edit.cage.face_count))
@@ -40,12 +40,12 @@ def test_cavity_belongs_to_the_piece_around_it():
     assert base.component_count == 2
     cut = Cut(base, Blade([1.5, 1.5, 1.4], [1, 0.1, 0.02], [0, 1, 0.1]))
     first = cut.advance(to=0.2)
-    assert [piece.volume for piece in first.components] == pytest.approx([26.0])
-    assert len(first.components[0].vertices) == first.cage.vertex_count
+    assert [piece.volume for piece in first.pieces] == pytest.approx([26.0])
+    assert len(first.pieces[0].vertices) == first.cage.vertex_count
     assert not first.separated
     last = cut.advance(to=5.0)
     assert last.separated
-    assert sum(piece.volume for piece in last.components) == pytest.approx(26.0)
+    assert sum(piece.volume for piece in last.pieces) == pytest.approx(26.0)
 
 
 def test_pieces_of_a_body():

@@ -92,7 +92,7 @@ def test_teeth_come_off_one_by_one():
     for depth in (0.5, 1.5, 1.9, 2.5, 4.2, 7.0):
         edit = cut.advance(to=depth)
         check_outline(edit.cage, comb().volume)
-        pieces.append((len(edit.components), edit.separated, edit.is_empty))
+        pieces.append((len(edit.pieces), edit.separated, edit.is_empty))
         faces, first = edit.cage.faces[comb().face_count :], comb().face_count
         split = [face for face, wall in zip(faces, edit.cage.face_wall[first:], strict=True) if wall != cut.wall]
         assert [face[1] for face in split[: len(known)]] == [face[1] for face in known]

@@ -9,11 +9,21 @@ from collections.abc import Sequence
 from os import PathLike
 
 import numpy as np
-from pxr import Tf, UsdGeom
+from pxr import UsdGeom
 
+from ..geometry import as_points
 from .body_frame import BodyFrame
 from .body_prims import BodyPrims
-from .layers import checked_path, color, export_stage, extent, flat_faces, integers, new_stage, vectors
+from .layers import (
+    checked_name,
+    checked_path,
+    color,
+    define_mesh,
+    export_stage,
+    flat_faces,
+    new_stage,
+    write_arrays,
+)
 from .materials import bind_material
 from .mesh_data import check_mesh
 
@@ -89,16 +99,12 @@ class AnimationWriter:
             RuntimeError: The writer is closed.
             ValueError: The name is taken or no identifier, or the mesh is empty or invalid.
         """
-        points = np.asarray(points, dtype=np.float64)
-        counts, indices = flat_faces(faces if isinstance(faces, np.ndarray) else tuple(faces))
+        points = as_points(points, "points", rows="n", widths=(3,))
+        counts, indices = flat_faces(faces)
         check_mesh(f"mesh {name}", points, counts, indices)
-        mesh = UsdGeom.Mesh.Define(self.stage, self._new_path(name))
-        mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+        mesh = define_mesh(self.stage, self._new_path(name))
         mesh.CreateDoubleSidedAttr(True)
-        mesh.CreatePointsAttr(vectors(points * self._scale))
-        mesh.CreateFaceVertexCountsAttr(integers(counts))
-        mesh.CreateFaceVertexIndicesAttr(integers(indices))
-        mesh.CreateExtentAttr(extent(points * self._scale))
+        write_arrays(mesh, points * self._scale, counts, indices)
         mesh.CreateDisplayColorAttr([color(mesh_color)])
         bind_material(mesh.GetPrim(), mesh_color)
 
@@ -178,9 +184,7 @@ class AnimationWriter:
         """Return the path of a prim to be made below ``/World``."""
         if self._closed:
             raise RuntimeError(f"{self.path} is closed: write before close() or inside the with block")
-        if not Tf.IsValidIdentifier(name):
-            raise ValueError(f"{name!r} is no name for a USD prim; {Tf.MakeValidIdentifier(name)!r} would be")
-        path = f"/World/{name}"
+        path = f"/World/{checked_name(name)}"
         if name == "materials" or self.stage.GetPrimAtPath(path):
             raise ValueError(f"the name {name!r} is taken in {self.path}")
         return path

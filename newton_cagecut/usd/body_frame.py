@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..geometry import as_points
 from .layers import flat_faces
 from .mesh_data import check_mesh
 from .outline import outline_loops
@@ -53,7 +54,7 @@ class BodyFrame:
         Raises:
             ValueError: The arrays are empty, not finite or do not fit together.
         """
-        points = _points(f"body {self.name}: points", self.points)
+        points = self._rows("points")
         triangles = np.asarray(self.triangles, dtype=np.int32)
         if triangles.ndim != 2 or triangles.shape[1] != 3:
             raise ValueError(f"body {self.name}: triangles must have shape (m, 3), got {triangles.shape}")
@@ -61,14 +62,12 @@ class BodyFrame:
         cap = np.full(len(triangles), -1) if self.triangle_cap is None else np.asarray(self.triangle_cap)
         if cap.shape != (len(triangles),):
             raise ValueError(f"body {self.name}: triangle_cap must have shape ({len(triangles)},), got {cap.shape}")
-        rest_points = (
-            points if self.rest_points is None else _points(f"body {self.name}: rest_points", self.rest_points)
-        )
+        rest_points = points if self.rest_points is None else self._rows("rest_points")
         if len(rest_points) != len(points):
             raise ValueError(f"body {self.name}: rest_points must have shape {points.shape}, got {rest_points.shape}")
         cage_points = self.cage_points
         if cage_points is not None:
-            cage_points = _points(f"body {self.name}: cage_points", cage_points)
+            cage_points = self._rows("cage_points")
             if self.has_plane_cage:
                 outline_loops(f"the cage of body {self.name}", self.cage_faces, len(cage_points))
             else:
@@ -76,10 +75,6 @@ class BodyFrame:
         surface = {"points": points, "triangles": triangles, "triangle_cap": cap, "rest_points": rest_points}
         return replace(self, **surface, cage_points=cage_points)
 
-
-def _points(label: str, values: np.ndarray) -> np.ndarray:
-    """Return ``values`` as float64 of shape ``(n, 3)``."""
-    points = np.asarray(values, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise ValueError(f"{label} must have shape (n, 3), got {points.shape}")
-    return points
+    def _rows(self, name: str) -> np.ndarray:
+        """Return one of the arrays of points as float64, shape ``(n, 3)``."""
+        return as_points(getattr(self, name), f"body {self.name}: {name}", rows="n", widths=(3,))

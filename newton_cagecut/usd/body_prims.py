@@ -8,7 +8,7 @@ import numpy as np
 from pxr import Usd, UsdGeom, Vt
 
 from .body_frame import BodyFrame
-from .layers import color, extent, flat_faces, integers, vectors
+from .layers import color, define_mesh, extent, flat_faces, integers, vectors
 from .materials import bind_material
 from .normals import split_caps, vertex_normals
 from .outline import define_outline, outline_loops
@@ -47,8 +47,7 @@ class SampledMesh(SampledPoints):
     """
 
     def __init__(self, stage: Usd.Stage, path: str):
-        self.mesh = UsdGeom.Mesh.Define(stage, path)
-        self.mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+        self.mesh = define_mesh(stage, path)
         self.mesh.CreateDoubleSidedAttr(True)
         self._counts = self._indices = np.zeros(0, dtype=np.int32)
         super().__init__(self.mesh)

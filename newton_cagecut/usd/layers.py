@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Sequence
 from os import PathLike, fspath
 
 import numpy as np
@@ -28,6 +29,17 @@ def checked_path(path: str | PathLike) -> str:
     if not os.path.isdir(folder):
         raise FileNotFoundError(f"{text}: there is no folder {folder}")
     return text
+
+
+def checked_name(name: str) -> str:
+    """Return the name of a prim.
+
+    Raises:
+        ValueError: USD cannot take it.
+    """
+    if not Tf.IsValidIdentifier(name):
+        raise ValueError(f"{name!r} is no name for a USD prim; {Tf.MakeValidIdentifier(name)!r} would be")
+    return name
 
 
 def new_stage(up_axis: str, meters_per_unit: float) -> Usd.Stage:
@@ -69,6 +81,26 @@ def export_stage(stage: Usd.Stage, path: str) -> None:
         opened.Reload(force=True)
 
 
+def define_mesh(stage: Usd.Stage, path: str) -> UsdGeom.Mesh:
+    """Return a new mesh without subdivision."""
+    mesh = UsdGeom.Mesh.Define(stage, path)
+    mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+    return mesh
+
+
+def write_arrays(mesh: UsdGeom.Mesh, points: np.ndarray, counts: np.ndarray, indices: np.ndarray) -> None:
+    """Write a mesh that does not move, in the units of the stage."""
+    mesh.CreatePointsAttr(vectors(points))
+    mesh.CreateFaceVertexCountsAttr(integers(counts))
+    mesh.CreateFaceVertexIndicesAttr(integers(indices))
+    mesh.CreateExtentAttr(extent(points))
+
+
+def points_at(prim: UsdGeom.PointBased, time: Usd.TimeCode | float) -> np.ndarray:
+    """Return the points of a prim at a time in its own units, shape ``(n, 3)``, float64; none where it has none."""
+    return np.array(prim.GetPointsAttr().Get(time) or [], dtype=np.float64).reshape(-1, 3)
+
+
 def vectors(values: np.ndarray) -> Vt.Vec3fArray:
     """Return an array of shape ``(n, 3)`` as USD's float3[]."""
     return Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(values, dtype=np.float32))
@@ -89,7 +121,7 @@ def color(value: tuple[float, float, float]) -> Gf.Vec3f:
     return Gf.Vec3f(*(float(channel) for channel in value))
 
 
-def flat_faces(faces: np.ndarray | tuple[tuple[int, ...], ...]) -> tuple[np.ndarray, np.ndarray]:
+def flat_faces(faces: np.ndarray | Sequence[Sequence[int]]) -> tuple[np.ndarray, np.ndarray]:
     """Return vertices of each face and all vertex indices of ``faces``, an ``(m, 3)`` array or polygons."""
     if isinstance(faces, np.ndarray):
         return np.full(len(faces), faces.shape[1], dtype=np.int32), faces.reshape(-1).astype(np.int32)

@@ -9,6 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 from pxr import Usd, UsdGeom
 
+from .layers import points_at
+
 _FLAT = 1e-6  # of the size: how far points may lie off the plane
 
 
@@ -68,7 +70,7 @@ def read_outline(label: str, curves: UsdGeom.BasisCurves) -> tuple[np.ndarray, n
     kind = (curves.GetTypeAttr().Get(), curves.GetWrapAttr().Get())
     if kind != (UsdGeom.Tokens.linear, UsdGeom.Tokens.periodic):
         raise ValueError(f"{label}: a plane cage is linear and periodic curves, these are {kind[0]} and {kind[1]}")
-    points = np.array(curves.GetPointsAttr().Get(first) or [], dtype=np.float64).reshape(-1, 3)
+    points = points_at(curves, first)
     sizes = np.array(curves.GetCurveVertexCountsAttr().Get(first) or [], dtype=np.int64)
     if len(points) == 0 or sizes.sum() != len(points):
         raise ValueError(f"{label}: curveVertexCounts add up to {sizes.sum()}, but there are {len(points)} points")

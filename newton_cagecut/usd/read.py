@@ -13,6 +13,7 @@ from pxr import Sdf, Tf, Usd, UsdGeom
 
 from ..cage import Cage
 from ..surface import Surface
+from .layers import points_at
 from .mesh_data import MeshData, check_mesh, turn_up
 from .outline import flat_points, read_outline
 
@@ -181,10 +182,9 @@ def _place(prim: UsdGeom.PointBased, points: np.ndarray, up_axis: str | None) ->
 def _arrays(mesh: UsdGeom.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return points, vertices of each face and vertex indices at the first sample."""
     first = Usd.TimeCode.EarliestTime()
-    points = np.array(mesh.GetPointsAttr().Get(first) or [], dtype=np.float64).reshape(-1, 3)
     counts = np.array(mesh.GetFaceVertexCountsAttr().Get(first) or [], dtype=np.int64)
     indices = np.array(mesh.GetFaceVertexIndicesAttr().Get(first) or [], dtype=np.int64)
-    return points, counts, indices
+    return points_at(mesh, first), counts, indices
 
 
 def _texture_coordinates(mesh: UsdGeom.Mesh, label: str, point_count: int, indices: np.ndarray) -> np.ndarray | None:

@@ -9,6 +9,8 @@ from os import PathLike, fspath
 import numpy as np
 from pxr import Usd, UsdGeom
 
+from .layers import points_at
+
 
 def validate_animation(source: str | PathLike | Usd.Stage) -> list[str]:
     """Return what is wrong with the meshes and curves of a file, at each of their samples and between them.
@@ -57,7 +59,7 @@ def _times(stage: Usd.Stage, prim: Usd.Prim) -> list[float]:
 
 def _mesh_problems(mesh: UsdGeom.Mesh, time: float) -> list[str]:
     """Return what is wrong with a mesh at one time."""
-    points = np.array(mesh.GetPointsAttr().Get(time) or [], dtype=np.float64).reshape(-1, 3)
+    points = points_at(mesh, time)
     counts = mesh.GetFaceVertexCountsAttr().Get(time) or []
     indices = mesh.GetFaceVertexIndicesAttr().Get(time) or []
     if len(points) == 0 or len(counts) == 0:
@@ -79,7 +81,7 @@ def _mesh_problems(mesh: UsdGeom.Mesh, time: float) -> list[str]:
 
 def _curve_problems(curves: UsdGeom.BasisCurves, time: float) -> list[str]:
     """Return what is wrong with periodic curves at one time."""
-    points = np.array(curves.GetPointsAttr().Get(time) or [], dtype=np.float64).reshape(-1, 3)
+    points = points_at(curves, time)
     sizes = np.array(curves.GetCurveVertexCountsAttr().Get(time) or [], dtype=np.int64)
     if len(points) == 0 or sizes.sum() != len(points) or sizes.min() < 3:
         return [f"curves of {sizes.tolist()} points do not go round {len(points)} points"]

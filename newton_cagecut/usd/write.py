@@ -8,11 +8,22 @@ from collections.abc import Sequence
 from os import PathLike
 
 import numpy as np
-from pxr import Sdf, Tf, Usd, UsdGeom, Vt
+from pxr import Sdf, Usd, UsdGeom, Vt
 
 from ..cage import Cage
-from ..geometry import lifted
-from .layers import checked_path, export_stage, extent, flat_faces, integers, new_stage, vectors
+from ..geometry import as_points, lifted
+from .layers import (
+    checked_name,
+    checked_path,
+    define_mesh,
+    export_stage,
+    extent,
+    flat_faces,
+    integers,
+    new_stage,
+    vectors,
+    write_arrays,
+)
 from .mesh_data import check_mesh
 from .outline import define_outline, outline_loops
 
@@ -46,20 +57,14 @@ def write_mesh(
         ValueError: The mesh is empty or invalid, or an argument is none of those named above.
     """
     path = checked_path(path)
-    points = np.asarray(points, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise ValueError(f"points must have shape (n, 3), got {points.shape}")
-    _check_name(name)
-    counts, indices = flat_faces(faces if isinstance(faces, np.ndarray) else tuple(faces))
+    points = as_points(points, "points", rows="n", widths=(3,))
+    prim_path = f"/World/{checked_name(name)}"
+    counts, indices = flat_faces(faces)
     check_mesh(f"mesh {name}", points, counts, indices)
     stage = new_stage(up_axis, meters_per_unit)
-    mesh = UsdGeom.Mesh.Define(stage, f"/World/{name}")
-    mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+    mesh = define_mesh(stage, prim_path)
     mesh.CreatePurposeAttr(purpose)
-    mesh.CreatePointsAttr(vectors(points / meters_per_unit))
-    mesh.CreateFaceVertexCountsAttr(integers(counts))
-    mesh.CreateFaceVertexIndicesAttr(integers(indices))
-    mesh.CreateExtentAttr(extent(points / meters_per_unit))
+    write_arrays(mesh, points / meters_per_unit, counts, indices)
     if uvs is not None:
         if np.shape(uvs) != (len(points), 2):
             raise ValueError(f"uvs must have shape ({len(points)}, 2), got {np.shape(uvs)}")
@@ -102,16 +107,11 @@ def write_cage(
 
 def _write_outline(path: str, cage: Cage, name: str, stage: Usd.Stage, meters_per_unit: float) -> None:
     """Write the loops of a plane cage."""
-    _check_name(name)
+    prim_path = f"/World/{checked_name(name)}"
     loops = outline_loops("the cage", cage.faces, cage.vertex_count)
     points = lifted(cage.vertices)[np.concatenate(loops)] / meters_per_unit
-    curves = define_outline(stage, f"/World/{name}")
+    curves = define_outline(stage, prim_path)
     curves.CreatePointsAttr(vectors(points))
     curves.CreateCurveVertexCountsAttr(integers([len(loop) for loop in loops]))
     curves.CreateExtentAttr(extent(points))
     export_stage(stage, path)
-
-
-def _check_name(name: str) -> None:
-    if not Tf.IsValidIdentifier(name):
-        raise ValueError(f"{name!r} is no name for a USD prim; {Tf.MakeValidIdentifier(name)!r} would be")

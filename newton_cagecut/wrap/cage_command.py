@@ -14,7 +14,7 @@ import numpy as np
 from ..cage import Cage, check_inside, mesh_clearance
 from ..surface import Surface
 from ..usd import checked_path, write_cage
-from .reading import read_any_mesh
+from .any_mesh import read_any_mesh
 from .wrap import checked_face_count, checked_offset, wrap_cage
 
 DESCRIPTION = """\

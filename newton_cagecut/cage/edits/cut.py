@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...geometry import as_number
 from ...section import Blade, BladePlane, Hinge, Section, clear_plane, clear_turn
-from ..arguments import as_number
 from ..cage import Cage
 from .edit import CageEdit
 from .strip import Strip, StripState

@@ -69,9 +69,14 @@ class CageEdit:
         return self.cage is self.before
 
     @cached_property
-    def components(self) -> tuple[CagePiece, ...]:
+    def pieces(self) -> tuple[CagePiece, ...]:
         """The pieces that the cage is in after the step, with what belongs to each."""
         return pieces_of(self.cage)
+
+    @property
+    def components(self) -> tuple[CagePiece, ...]:
+        """Earlier name of ``pieces``; a cage's components are its connected sets of faces, cavities included."""
+        return self.pieces
 
     @cached_property
     def separated(self) -> bool:
