@@ -12,21 +12,23 @@ import numpy as np
 _COUNTS = {2: "two numbers", 3: "three numbers"}
 
 
-def as_number(value: float, what: str) -> float:
-    """A number, which may be infinite.
+def as_number(value: float, what: str, *, limits: tuple[float, float] | None = None) -> float:
+    """A number, which may be infinite where there are no limits.
 
     Args:
         value: What was passed.
         what: What it is, for the error.
+        limits: The least and the greatest number that it may be.
 
     Raises:
         TypeError: If it is not a number.
-        ValueError: If it is nan.
+        ValueError: If it is nan or not within the limits.
     """
     try:
         number = float(value)
     except (TypeError, ValueError):
         raise TypeError(f"{what} must be a number, got {value!r}") from None
+    _check_within(number, what, limits)
     if np.isnan(number):
         raise ValueError(f"{what} must be a number, got nan")
     return number
@@ -52,20 +54,24 @@ def as_length(value: float, what: str) -> float:
     return number
 
 
-def as_index(value: int, what: str) -> int:
+def as_index(value: int, what: str, *, limits: tuple[int, int] | None = None) -> int:
     """An integer.
 
     Args:
         value: What was passed.
         what: What it is, for the error.
+        limits: The least and the greatest integer that it may be.
 
     Raises:
         TypeError: If it is not an integer.
+        ValueError: If it is not within the limits.
     """
     try:
-        return operator.index(value)
+        index = operator.index(value)
     except TypeError:
         raise TypeError(f"{what} must be an integer, got {value!r}") from None
+    _check_within(index, what, limits)
+    return index
 
 
 def as_vector(value: np.ndarray, what: str, *, dimension: int | None = None) -> np.ndarray:
@@ -172,3 +178,8 @@ def as_loops(loops: Sequence[Sequence[int]], of: str) -> tuple[np.ndarray, np.nd
     face_start = np.concatenate([[0], np.cumsum([len(loop) for loop in arrays], dtype=np.int64)]).astype(np.int64)
     face_vertex = np.concatenate([*arrays, np.empty(0, dtype=np.int64)]).astype(np.int64)
     return face_start, face_vertex
+
+
+def _check_within(number: float, what: str, limits: tuple[float, float] | None) -> None:
+    if limits is not None and not limits[0] <= number <= limits[1]:
+        raise ValueError(f"{what} must lie between {limits[0]} and {limits[1]}, got {number}")

@@ -27,7 +27,7 @@ class Domain:
         cage: The cage; it may have cuts already.
         quads: "mean_value" or "harmonic": how convex quads interpolate.
         distance: "grid" or "all": how the nearest wall is found.
-        grid_resolution: Cells of the grid along the cage's longest side.
+        grid_resolution: Cells of the grid along the cage's longest side; by default, what suits the number of walls.
         device: Where to put them; Warp's current device by default.
         walls: The walls as edits have left them, of which a cut cage does not tell all; by default those of its faces.
 
@@ -42,7 +42,7 @@ class Domain:
         quads: str = "mean_value",
         distance: str = "grid",
         device: wp.context.Devicelike = None,
-        grid_resolution: int = 64,
+        grid_resolution: int | None = None,
         walls: Walls | None = None,
     ) -> None:
         require_choice("distance", distance, DISTANCES)

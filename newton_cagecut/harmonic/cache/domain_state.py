@@ -47,7 +47,7 @@ class DomainState:
         *,
         quads: str,
         distance: str,
-        grid_resolution: int,
+        grid_resolution: int | None,
         device: wp.context.Device,
         walls: Walls | None = None,
     ) -> DomainState:

@@ -116,7 +116,7 @@ def _wall_rows(
     frame: UnitFrame, corners: np.ndarray, walls: np.ndarray, normals: np.ndarray, two_sided: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Triangles that are no gates, in float32 from unit-frame corners in float64."""
-    rows = _plane_rows(frame.tounits(corners), normals)
+    rows = _plane_rows(frame.to_unit(corners), normals)
     rows["wall"] = walls.astype(np.int32)
     rows["two_sided"] = two_sided.astype(np.int32)
     rows["gate"] = np.full(len(corners), -1, dtype=np.int32)
