@@ -9,6 +9,9 @@ import pytest
 from PIL import Image
 
 from benchmarks import accuracy, locality, pictures, table1
+from benchmarks.__main__ import NAMES
+from benchmarks.__main__ import main as run_benchmark
+from benchmarks.comparison import compared
 from benchmarks.scenes import SCENES
 from newton_cagecut import HarmonicCoordinates
 from newton_cagecut.report.bench import spread
@@ -59,6 +62,34 @@ def test_table_has_our_row_and_the_papers(capsys, tmp_path):
     assert [row[0] for row in rows] == ["scene", "---", "jelly", "(paper)"]
     assert {len(row) for row in rows} == {len(HEAD)}
     assert rows[3][-3:] == ["4.2", "115", "520"]
+
+
+def test_benchmarks_are_run_by_their_names(capsys):
+    """The list names each with a line, and an unknown one exits with 2."""
+    assert run_benchmark([]) == 0
+    assert all(f"  {name} " in capsys.readouterr().out for name in NAMES[:1])
+    assert run_benchmark(["speed"]) == 2
+    assert "there is no benchmark 'speed'" in capsys.readouterr().err
+
+
+def test_runs_are_compared(tmp_path, capsys):
+    """A run compared with its own file says how the times differ, and not what is the same."""
+    kept, command = tmp_path / "kept.json", ["table1", "--scene", "jelly", "--walks", "2", "--device", "cpu"]
+    run_benchmark([*command, "--json", str(kept)])
+    run_benchmark([*command, "--compare", str(kept)])
+    lines = capsys.readouterr().out.split(f"compared with {kept}")[1].splitlines()
+    assert any(line.startswith("jelly") and "recompute ms" in line for line in lines)
+    assert not any("re-walk %" in line or "(paper)" in line for line in lines)
+
+
+def test_comparison_matches_rows_by_their_names():
+    """Rows are known by their leading texts; a new one is named, and the ratio is of the new to the old."""
+    head = ["scene", "what", "ms"]
+    old = {"title": "times", "head": head, "rows": [["a", "x", "2.0"], ["a", "y", "3"]]}
+    new = {"title": "times", "head": head, "rows": [["b", "x", "1"], ["a", "x", "1.0"], ["a", "y", "3"]]}
+    table = [line.split() for line in compared([old], [new])[1:]]
+    assert table == [["b", "x", "none", "new"], ["a", "x", "ms", "2.0", "1.0", "0.50"]]
+    assert compared([old], [old]) == ["nothing differs"]
 
 
 def test_quadrature_points_have_gradients_besides():

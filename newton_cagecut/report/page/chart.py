@@ -111,6 +111,8 @@ def _draw_panel(axes: Axes, panel: Panel, colors: dict[str, str]) -> None:
         axes.axhspan(0.0, panel.floor, color="0.85", zorder=0, label="error of the reference")
         values = [y for line in panel.lines for y in line.y]
         axes.set_ylim(0.5 * min([panel.floor, *values]), 2.0 * max([panel.floor, *values]))
+    axes.xaxis.set_minor_formatter("")
+    axes.yaxis.set_minor_formatter("")
     axes.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
     axes.grid(alpha=0.3, which="both", linewidth=0.5)
 

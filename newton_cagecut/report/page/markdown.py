@@ -33,8 +33,8 @@ class Section:
     Attributes:
         title: Its heading.
         lines: Paragraphs, in Markdown.
-        tables: Tables after them.
-        charts: Plots after these.
+        tables: Tables after them and the plots.
+        charts: Plots.
     """
 
     title: str
@@ -65,10 +65,10 @@ def section_lines(section: Section) -> list[str]:
     lines = [f"## {section.title}", ""]
     for paragraph in section.lines:
         lines += [paragraph, ""]
-    for table in section.tables:
-        lines += [*([table.title, ""] if table.title else []), *markdown_lines(table.head, table.rows), ""]
     for chart in section.charts:
         lines += [f"![{chart.title}]({chart.name}.png)", ""]
+    for table in section.tables:
+        lines += [*([table.title, ""] if table.title else []), *markdown_lines(table.head, table.rows), ""]
     return lines
 
 

@@ -19,7 +19,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...cage import Cage
 
-_FRONT_SHARE = 0.2  # of the longest edge, along the front
+_FRONT_SHARE = {2: 0.01, 3: 0.2}  # of the longest edge, along the front, by the dimension
 _GRADING = 0.4
 
 
@@ -46,7 +46,7 @@ def fill(cage: Cage, swept: Sequence[np.ndarray], front: np.ndarray, size: float
     scale = float((cage.vertices.max(axis=0) - low).max())
     size *= _mean_edge(cage) / scale
     shape = _shape(cage, [(polygon - low) / scale for polygon in swept], low, scale)
-    _refine(shape, (front - low) / scale, _FRONT_SHARE * size)
+    _refine(shape, (front - low) / scale, _FRONT_SHARE[cage.dimension] * size)
     try:
         mesh = OCCGeometry(shape, dim=cage.dimension).GenerateMesh(maxh=size, grading=_GRADING)
     except Exception as error:  # Netgen has a class of its own for its failures, and OCC another

@@ -7,7 +7,7 @@ from __future__ import annotations
 from ..measurement import Row
 from .elements_row import ElementsRow
 from .epsilon import EpsilonRow
-from .error import ErrorRow
+from .error_row import ErrorRow
 from .exact import ExactRow
 from .growth import GrowthRow
 from .paper_table import PaperTableRow

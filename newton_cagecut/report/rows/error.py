@@ -5,43 +5,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import partial
 from time import perf_counter
 
 import numpy as np
 
 from ...harmonic import HarmonicCoordinates
 from ..bench import STAGES, Bench
-from ..measurement import Measurement, Record
-from ..page.markdown import Section
 
 NAME = "error"
 CORRECTIONS = ("none", "affine", "harmonic")
 KINDS = ("weights", "gradients", "surface")
-
-
-class ErrorRow:
-    """Squared errors and times of corrections, walks and seeds. They are drawn with those of the finite elements."""
-
-    name = NAME
-
-    def measurements(self, benches: Sequence[Bench]) -> Iterator[Measurement]:
-        """See ``Row``."""
-        for bench in benches:
-            yield Measurement("reference", bench.scene.name, {}, partial(measure_reference, bench))
-            for walks in bench.effort.walk_counts:
-                for correction in CORRECTIONS:
-                    for seed in bench.effort.seeds:
-                        chosen = {"correction": correction, "walks": walks, "seed": seed}
-                        run = partial(measure, bench, **chosen)
-                        yield Measurement(NAME, bench.scene.name, chosen, run)
-
-    def sections(self, records: Sequence[Record]) -> Iterator[Section]:
-        """See ``Row``."""
-        from .error_pages import error_sections
-
-        yield from error_sections(records)
 
 
 def measure_reference(bench: Bench) -> dict:
@@ -58,7 +31,7 @@ def measure_reference(bench: Bench) -> dict:
     return found
 
 
-def measure(bench: Bench, correction: str, walks: int, seed: int, **options) -> dict:
+def measure_error(bench: Bench, correction: str, walks: int, seed: int, **options) -> dict:
     """Measure squared errors and times of one run.
 
     Args:

@@ -24,6 +24,7 @@ _Y_LABELS = {
     "surface": "error of the deformed surface / diameter",
 }
 _DRAWN = ("weights", "gradients")
+_PAPER = "affine"
 _TEXT = (
     "Root mean square over the points: of the Euclidean norm of the errors of all of a point's weights; of that of its "
     "gradients, relative to the gradients; of where a smooth motion takes it, relative to the cage's diameter. Times "
@@ -42,12 +43,12 @@ def error_sections(records: Sequence[Record]) -> Iterator[Section]:
     """
     scenes = [scene for scene in scenes_of(records) if chosen(records, ERROR, scene)]
     if scenes:
-        yield Section("Error against run time", [_TEXT])
+        yield Section("Error against run time", [_TEXT], [_gains(records, scenes)])
     for scene in scenes:
         yield Section(
             f"Error against run time: {scene}",
             _notes(records, scene),
-            [_table(records, scene, kind) for kind in KINDS],
+            [_table(records, scene)],
             [_chart(records, scene)],
         )
 
@@ -73,26 +74,50 @@ def _notes(records: Sequence[Record], scene: str) -> list[str]:
     return notes + [f"Finite elements failed: {text}." for text in sorted(failed)]
 
 
-def _table(records: Sequence[Record], scene: str, kind: str) -> Table:
-    """Errors and times, most accurate last."""
+def _table(records: Sequence[Record], scene: str) -> Table:
+    """The most accurate run of each method."""
     rows = []
     for stage in STAGES:
-        for curve in all_curves(records, scene, stage, kind):
-            whole = _whole(records, scene, curve, stage, kind)
-            for k in sorted({0, len(curve.errors) // 2, len(curve.errors) - 1}):
-                cells = [f"{curve.amount[k]:.0f}", f"{curve.errors[k]:.2e}", seconds_text(curve.seconds[k])]
-                rows.append([_TITLES[stage], curve.label, *cells, whole[k]])
-    head = ["when", "method", "walks or unknowns", "error", "time", "whole again"]
-    return Table(f"{_Y_LABELS[kind][0].upper()}{_Y_LABELS[kind][1:]}:", head, rows)
+        curves = {kind: all_curves(records, scene, stage, kind) for kind in KINDS}
+        for k, curve in enumerate(curves["weights"]):
+            errors = [f"{curves[kind][k].errors[-1]:.2e}" for kind in KINDS]
+            times = [seconds_text(curve.seconds[-1]), _whole(records, scene, curve, stage)]
+            rows.append([_TITLES[stage], curve.label, f"{curve.amount[-1]:.0f}", *errors, *times])
+    head = ["when", "method", "walks or unknowns", *KINDS, "time", "all walked again"]
+    return Table("Errors of the most accurate run of each method:", head, rows)
 
 
-def _whole(records: Sequence[Record], scene: str, curve: Curve, stage: str, kind: str) -> list[str]:
-    """The times of full recomputes beside those of updates."""
+def _whole(records: Sequence[Record], scene: str, curve: Curve, stage: str) -> str:
+    """The time of the full recompute beside that of the update, of the run with the most walks."""
     for correction in CORRECTIONS if stage == "during" else ():
-        whole = walk_curve(records, scene, correction, stage, kind, seconds="whole_seconds")
+        whole = walk_curve(records, scene, correction, stage, "weights", seconds="whole_seconds")
         if whole.label == curve.label:
-            return [seconds_text(seconds) for seconds in whole.seconds]
-    return [""] * len(curve.errors)
+            return seconds_text(whole.seconds[-1])
+    return ""
+
+
+def _gains(records: Sequence[Record], scenes: Sequence[str]) -> Table:
+    """Squared errors of the paper's method over those of others, at equal run time."""
+    rows = []
+    for scene in scenes:
+        for stage in STAGES:
+            cells = []
+            for correction in (name for name in CORRECTIONS if name != _PAPER):
+                for kind in _DRAWN:
+                    curves = [walk_curve(records, scene, name, stage, kind) for name in (_PAPER, correction)]
+                    cells.append("" if any(curve.empty for curve in curves) else f"{_gain(*curves):.2f}")
+            rows.append([scene, _TITLES[stage], *cells])
+    head = [f"{kind}, {name}" for name in CORRECTIONS if name != _PAPER for kind in _DRAWN]
+    title = (
+        "Squared error of the paper's method (affine) over that of another correction, at equal run time: the squared "
+        "errors times the times of the most walks, because the one falls as the other grows."
+    )
+    return Table(title, ["scene", "when", *head], rows)
+
+
+def _gain(paper: Curve, other: Curve) -> float:
+    costs = [curve.errors[-1] ** 2 * curve.seconds[-1] for curve in (paper, other)]
+    return float(costs[0] / costs[1])
 
 
 def _chart(records: Sequence[Record], scene: str) -> Chart:
