@@ -7,7 +7,6 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from importlib.util import find_spec
 from pathlib import Path
-from time import perf_counter
 
 DESCRIPTION = """\
 Step bodies that are stiff, light, heavy, flat, inside out, spinning, cut and dropped,
@@ -54,36 +53,6 @@ def run(options: Namespace) -> int:
     """
     if find_spec("matplotlib") is None:
         raise ImportError("the picture needs matplotlib: pip install 'newton_cagecut[report]'")
-    options.out.mkdir(parents=True, exist_ok=True)
-    import warp as wp
+    from .stability.measuring import measure_all
 
-    wp.config.quiet = True
-    from .scene_file import load_scene
-    from .stability.bench import Bench
-    from .stability.machine import machine
-    from .stability.page import PICTURE, Page
-    from .stability.picture import draw
-    from .stability.progress import Progress
-    from .stability.rows_starts import MODELS
-    from .stability.sweep import axes, map_name, sweep
-    from .stability.table import measure, rows
-
-    start = perf_counter()
-    scene = load_scene(options.scene) if options.scene else None
-    bench = Bench(quick=options.quick, scene=scene)
-    young, time_steps = axes(quick=options.quick)
-    table = rows(quick=options.quick, scene=scene is not None)
-    results, maps = [], []
-    with Progress(len(table) + len(MODELS) * len(young) * len(time_steps), "stability") as progress:
-        for row in table:
-            results.append(measure(row, bench))
-            progress.advance(row.name)
-        for model in MODELS:
-            maps.append(sweep(bench, model, lambda model=model: progress.advance(map_name(model))))
-    settings = {"scene": options.scene, "quick": options.quick}
-    page = Page(settings=settings, machine=machine(), results=results, maps=maps, seconds=perf_counter() - start)
-    draw(maps, options.out / PICTURE)
-    page.write(options.out)
-    print(page.text())
-    print(f"{options.out / 'stability.md'} has the page")
-    return 1 if page.failed else 0
+    return measure_all(options.scene, options.out, quick=options.quick)

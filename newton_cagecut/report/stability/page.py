@@ -11,9 +11,10 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from ..page.markdown import markdown_lines, table_lines
 from .outcome import Limits, Result
 from .sweep import Cell, Map, map_name
-from .text import aligned, markdown, number, share, step_text
+from .text import number, share, step_text
 
 FORMAT = 1
 PICTURE = "stability.png"
@@ -76,10 +77,10 @@ class Page:
         lines = []
         for group, results in _grouped(self.results):
             body = [_cells(result, bold=False) for result in results]
-            lines += [group, *aligned(_HEAD, body), ""]
+            lines += [group, *table_lines(_HEAD, body), ""]
         for found in self.maps:
             for title, body in _map_tables(found):
-                lines += [title, *aligned(_map_head(found), body), ""]
+                lines += [title, *table_lines(_map_head(found), body), ""]
         return "\n".join([*lines, self.summary()])
 
     def markdown(self) -> str:
@@ -87,7 +88,7 @@ class Page:
         device = ", ".join(f"{name} {value}" for name, value in self.machine.items() if value)
         lines = ["# Stability", "", f"{self.summary()}. {device}.", "", _EXPLANATION]
         for group, results in _grouped(self.results):
-            lines += [f"## {group}", "", *markdown(_HEAD, [_cells(result, bold=True) for result in results]), ""]
+            lines += [f"## {group}", "", *markdown_lines(_HEAD, [_cells(result, bold=True) for result in results]), ""]
         lines += [
             "## Map",
             "",
@@ -96,7 +97,7 @@ class Page:
         lines += ["", f"![Energy gain and angular momentum over stiffness and time step]({PICTURE})", ""]
         for found in self.maps:
             for title, body in _map_tables(found):
-                lines += [f"### {title}", "", *markdown(_map_head(found), body), ""]
+                lines += [f"### {title}", "", *markdown_lines(_map_head(found), body), ""]
         return "\n".join(lines)
 
     def write(self, folder: Path) -> None:
@@ -110,18 +111,20 @@ class Page:
         for result in self.results:
             values = {**asdict(result.outcome), "failures": list(result.failures), "seconds": result.seconds}
             limits = None if result.row.limits is None else asdict(result.row.limits)
-            records[result.row.name] = _record(result.row.name, {"group": result.row.group, "limits": limits}, values)
+            parameters = {"group": result.row.group, "limits": limits}
+            records[result.row.name] = self._record(result.row.name, parameters, values)
         for found in self.maps:
             for cell in found.cells.values():
                 name = map_name(found.model)
                 parameters = {"model": found.model, "young": cell.young, "dt": cell.dt}
-                records[f"{name}, {cell.young:g} Pa, {cell.dt:g} s"] = _record(name, parameters, asdict(cell.outcome))
+                records[f"{name}, {cell.young:g} Pa, {cell.dt:g} s"] = self._record(
+                    name, parameters, asdict(cell.outcome)
+                )
         return {"format": FORMAT, "settings": self.settings, "machine": self.machine, "records": records}
 
-
-def _record(row: str, parameters: dict, values: dict) -> dict:
-    finite = {key: str(v) if isinstance(v, float) and not math.isfinite(v) else v for key, v in values.items()}
-    return {"row": row, "parameters": parameters, "values": finite}
+    def _record(self, row: str, parameters: dict, values: dict) -> dict:
+        finite = {key: str(v) if isinstance(v, float) and not math.isfinite(v) else v for key, v in values.items()}
+        return {"row": row, "scene": self.settings["scene"], "parameters": parameters, "values": finite}
 
 
 def _grouped(results: Sequence[Result]) -> list[tuple[str, list[Result]]]:

@@ -33,7 +33,7 @@ def drop(bench: Bench, model: str, speed: float) -> Outcome:
     trial.run(180, FRAME, watch=watch)
     ends = np.linalg.norm(np.ptp(trial.positions, axis=0))
     whole = trial.finite and trial.upright() and abs(ends / np.linalg.norm(CUBE) - 1.0) < 0.1
-    return trial.outcome(recovers=whole, note=f"lowest cage vertex at {min(lowest):.3g} m")
+    return trial.outcome(recovers=bool(whole), note=f"lowest cage vertex at {min(lowest):.3g} m")
 
 
 def heavy(bench: Bench, gravity: float, density: float, young: float = 1.0e5) -> Outcome:

@@ -1,12 +1,11 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Numbers as text, and tables as lines."""
+"""Numbers as text."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 
 def share(value: float | None) -> str:
@@ -33,24 +32,3 @@ def number(value: float | None) -> str:
 def step_text(dt: float) -> str:
     """A time step: a fraction of a second, or a power of ten."""
     return f"{dt:.0e}" if dt < 2.0e-3 else f"1/{round(1.0 / dt)}"
-
-
-def aligned(head: Sequence[str], body: Sequence[Sequence[str]]) -> list[str]:
-    """A table in columns of equal width.
-
-    Args:
-        head: The columns' names.
-        body: The rows.
-    """
-    widths = [max(map(len, column)) for column in zip(head, *body)]
-    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in (head, *body)]
-
-
-def markdown(head: Sequence[str], body: Sequence[Sequence[str]]) -> list[str]:
-    """A table in Markdown.
-
-    Args:
-        head: The columns' names.
-        body: The rows.
-    """
-    return [f"| {' | '.join(row)} |" for row in (head, ["---"] * len(head), *body)]

@@ -191,7 +191,7 @@ class Trial:
 
     def recovered(self) -> bool:
         """Whether next to no elastic energy of that of the start is left, and nothing is inside out."""
-        return self.finite and self.elastic_left() <= _RECOVERED and self.upright()
+        return bool(self.finite and self.elastic_left() <= _RECOVERED and self.upright())
 
     def outcome(self, *, free: bool = False, **columns: object) -> Outcome:
         """What has been seen.

@@ -6,17 +6,18 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import newton
 
+from .script import loaded_script
+
 Build = Callable[[newton.ModelBuilder], object]
 
 
-def load_scene(name: str, *, walks: int = 64) -> Build:
+def build_of(name: str, *, walks: int = 64) -> Build:
     """What adds a scene's bodies to a builder that has the attributes of ``SolverCageCut``.
 
     Args:
@@ -24,11 +25,12 @@ def load_scene(name: str, *, walks: int = 64) -> Build:
         walks: Walks a point of an example's bodies.
 
     Raises:
-        ValueError: There is no such script or example, or the script has no ``build``.
+        OSError: There is no such script.
+        ValueError: There is no such example, or the script has no ``build``.
     """
     path = Path(name)
     if path.suffix == ".py":
-        return _of_script(path)
+        return loaded_script(path).build
     example = Path.cwd() / "examples" / f"{name}.py"
     if not example.is_file():
         raise ValueError(
@@ -47,16 +49,4 @@ def load_scene(name: str, *, walks: int = 64) -> Build:
         scene.add_bodies(builder)
         builder.add_ground_plane()
 
-    return build
-
-
-def _of_script(path: Path) -> Build:
-    if not path.is_file():
-        raise ValueError(f"there is no script {path}")
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    build = getattr(module, "build", None)
-    if not callable(build):
-        raise ValueError(f"{path} has no function build(builder) that adds its bodies to a newton.ModelBuilder")
     return build
