@@ -13,40 +13,41 @@ _MOST_ROUNDS = 60
 
 
 def bisect(
-    points: np.ndarray, triangles: np.ndarray, wanted: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    points: np.ndarray, triangles: np.ndarray, wanted: Callable[[np.ndarray], np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Bisect triangles, those with a common edge alike, so that meshes without hanging corners stay so.
 
     Args:
         points: Positions, shape (point_count, dimension).
         triangles: Corners, shape (triangle_count, 3).
-        wanted: (centres, first triangles that they are of) -> greatest length of their edges.
+        wanted: Centres of triangles -> greatest length of their edges.
 
     Returns:
         Positions, those given first; corners of the triangles, oriented as they were; and which of the given ones each
         is a part of, ascending.
     """
     owner = np.arange(len(triangles))
+    fresh = np.ones(len(triangles), dtype=bool)
     for _ in range(_MOST_ROUNDS):
         corner = points[triangles]
         edge = np.roll(corner, -1, axis=1) - corner
         squared = (edge**2).sum(axis=2)
+        marked = np.zeros(len(triangles), dtype=bool)
+        center = (corner[fresh, 0] + corner[fresh, 1] + corner[fresh, 2]) / 3.0
+        marked[fresh] = np.sqrt(squared[fresh].max(axis=1)) > wanted(center)
+        if not marked.any():
+            break
         key = _edge_keys(triangles, len(points))
         # Of edges that are as long but for rounding, the one that all its triangles agree on.
         longest = _first_longest(squared, key)
         order = (longest[:, None] + np.arange(3)) % 3
         triangles = np.take_along_axis(triangles, order, axis=1)
         key = np.take_along_axis(key, order, axis=1)
-        reach = np.sqrt(squared.max(axis=1))
-        center = (corner[:, 0] + corner[:, 1] + corner[:, 2]) / 3.0
-        marked = reach > wanted(center, owner)
-        if not marked.any():
-            break
         split = _closed(key, np.unique(key[marked, 0]))
-        halved = np.searchsorted(split, key)
-        halved[halved == len(split)] = 0
-        is_split = split[halved] == key
-        triangles, owner = _children(triangles, np.where(is_split, len(points) + halved, -1), owner)
+        place = np.minimum(np.searchsorted(split, key), len(split) - 1)
+        middle = np.where(split[place] == key, len(points) + place, -1)
+        triangles, source = _children(triangles, middle)
+        owner, fresh = owner[source], middle[source, 0] >= 0
         points = np.concatenate([points, (points[split // len(points)] + points[split % len(points)]) / 2.0])
     return points, triangles, owner
 
@@ -71,8 +72,12 @@ def _closed(key: np.ndarray, split: np.ndarray) -> np.ndarray:
         split = more
 
 
-def _children(triangles: np.ndarray, middle: np.ndarray, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Parts of triangles (a, b, c), first across ab, then across the other edges that have a middle, else -1."""
+def _children(triangles: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Parts of triangles (a, b, c), first across ab, then across the other edges that have a middle, else -1.
+
+    Returns:
+        Corners of the parts, and the triangles that they are of, ascending.
+    """
     a, b, c = triangles.T
     m, p, q = middle.T
     whole = m < 0
@@ -88,4 +93,4 @@ def _children(triangles: np.ndarray, middle: np.ndarray, owner: np.ndarray) -> t
     found = np.concatenate([np.stack(corners, axis=1)[mask] for mask, corners in parts])
     source = np.concatenate([np.flatnonzero(mask) for mask, _ in parts])
     order = np.argsort(source, kind="stable")
-    return found[order], owner[source[order]]
+    return found[order], source[order]

@@ -155,6 +155,4 @@ def make_layer_rows(dimension: int) -> LayerRows:
                 for axis in range(wp.static(dimension)):
                     rows[i * wp.static(dimension) + axis, column[item]] -= slope[axis]
 
-    return LayerRows(
-        Vector, Nodes, make_panels, make_far_panels, charges, charge_slopes, dipoles, dipole_slopes
-    )
+    return LayerRows(Vector, Nodes, make_panels, make_far_panels, charges, charge_slopes, dipoles, dipole_slopes)
