@@ -28,16 +28,14 @@ KNOWN_ROOMS = {
 # What stands inside a room, from the bottom up: each line may know those above it and itself.
 LEVELS = {
     "harmonic": (
-        ("journal", "launch", "stats"),
+        ("journal", "launch", "options", "point_change", "stats"),
         ("walls",),
         ("walks",),
-        ("options",),
-        ("point_checks",),
-        ("point_change",),
         ("faces",),
         ("fit",),
         ("resolve",),
         ("cache",),
+        ("point_checks",),
         ("coordinates",),
         ("__init__",),
     ),

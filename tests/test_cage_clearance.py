@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 
 from cage_shapes import box, star_prism, u_shape
 from newton_cagecut.cage import mesh_clearance
-from newton_cagecut.cage.checks.inside import simplex_distances
-from newton_cagecut.geometry.distances import edge_distances, nearest_on_edges, nearest_on_triangles
+from newton_cagecut.geometry import edge_distances, nearest_on_edges, nearest_on_triangles, simplex_distances
 from surface_shapes import icosphere
 from wrap_shapes import independent_gap
 

@@ -13,7 +13,7 @@ from cage_shapes import SHAPES, box, check_manifold, hexagonal_prism, prism, tet
 from cut_sequences import CAGES, crossings
 from extension_checks import check_edit
 from newton_cagecut.cage import Cage, CageEdit, Cut
-from newton_cagecut.geometry.distances import edge_distances
+from newton_cagecut.geometry import edge_distances
 from newton_cagecut.section import Blade
 from plane_shapes import PLANES, outline, rectangle, ring, square
 

@@ -10,9 +10,9 @@ import pytest
 from scipy.spatial import cKDTree
 
 from newton_cagecut.cage import boundary_distances
-from newton_cagecut.cage.checks.inside import simplex_distances
 from newton_cagecut.elastic import sample_quadrature
 from newton_cagecut.elastic.quadrature import _dense_inside
+from newton_cagecut.geometry import simplex_distances
 from plane_shapes import PLANES
 
 QUADS = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])

@@ -12,6 +12,7 @@ from cage_shapes import box
 from harmonic_shapes import MAKERS, UNITS, assert_identical, interior_points, middle_cut, snapshot
 from newton_cagecut.cage import Cage
 from newton_cagecut.harmonic import Domain, HarmonicCoordinates
+from newton_cagecut.harmonic.walks.query_points import point_arrays
 from plane_shapes import outline, rectangle
 
 WALKS = 64
@@ -52,9 +53,11 @@ def test_nothing_is_kept_without_cuttable(cage, points, monkeypatch):
     np.testing.assert_array_equal(free.gradients, kept.gradients)
     memory = free.memory()
     assert memory["landings"] == memory["bounds"] == 0
-    arrays = [value for part in (free._walker, free._walker.landings) for value in vars(part).values()]
+    assert free._cache.records is None
+    arrays = [value for part in (free._cache, free._cache.weights) for value in vars(part).values()]
+    arrays += point_arrays(free._cache.points).values()
     assert max(array.size for array in arrays if isinstance(array, wp.array)) < len(points) * WALKS
-    monkeypatch.setattr("newton_cagecut.harmonic.cache.walk_cache._BATCH_WALKS", 7 * WALKS)
+    monkeypatch.setattr("newton_cagecut.harmonic.cache.stages._BATCH_WALKS", 7 * WALKS)
     free.recompute()
     np.testing.assert_array_equal(free.weights, kept.weights)
 

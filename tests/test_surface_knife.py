@@ -13,7 +13,7 @@ from assets.bunny import bunny_mesh
 from cage_shapes import box
 from cut_sequences import ASSETS
 from newton_cagecut.cage import Cage, Cut, check_inside
-from newton_cagecut.cage.checks.inside import simplex_distances
+from newton_cagecut.geometry import simplex_distances
 from newton_cagecut.section import Blade, BladePlane
 from newton_cagecut.surface import Surface, SurfaceCut
 from newton_cagecut.usd import read_cage, read_surface

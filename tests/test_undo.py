@@ -29,7 +29,7 @@ def _arrays(coordinates: HarmonicCoordinates) -> dict[str, np.ndarray]:
     arrays |= coordinates.landings | {"degrees": coordinates.degrees}
     arrays |= {"corner": domain.walls.data.rows.numpy()["corner_0"], "items": domain.grid.cells.items.numpy()}
     arrays |= {"first": domain.grid.cells.first.numpy(), "nearest": domain.grid._nearest.numpy()}
-    arrays |= {"loops": domain.faces.loop_vertex.numpy(), "position": coordinates._walker.points.position.numpy()}
+    arrays |= {"loops": domain.faces.loop_vertex.numpy(), "position": coordinates._cache.points.position.numpy()}
     return {name: array.copy() for name, array in arrays.items()}
 
 

@@ -18,7 +18,7 @@ from pxr import Usd, UsdGeom
 from newton_cagecut.__main__ import main
 from newton_cagecut.cage import mesh_clearance
 from newton_cagecut.usd import read_cage, read_surface, write_mesh
-from newton_cagecut.wrap.reading import read_any_mesh
+from newton_cagecut.wrap.any_mesh import read_any_mesh
 from wrap_shapes import CUBE, CUBE_TRIANGLES, sheet
 
 HOUSE = CUBE * [1.0, 2.0, 3.0]

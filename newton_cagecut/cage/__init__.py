@@ -4,7 +4,7 @@
 
 from .cage import Cage
 from .checks.clearance import mesh_clearance
-from .checks.inside import boundary_distances, check_inside, simplex_distances
+from .checks.inside import boundary_distances, check_inside
 from .edits.cut import Cut, CutSnapshot
 from .edits.edit import CageEdit
 from .pieces import CagePiece, pieces_of
@@ -21,5 +21,4 @@ __all__ = [
     "check_inside",
     "mesh_clearance",
     "pieces_of",
-    "simplex_distances",
 ]

@@ -13,10 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ..geometry import PolygonMesh, triangulate_faces, winding_numbers
-from .arguments import as_loops, as_vertices
-from .checks import topology as validation
-from .edits import extrusion as extension
+from ..geometry import PolygonMesh, as_loops, as_points, triangulate_faces, units, winding_numbers
+from .checks import topology
+from .edits import extrusion
 from .edits.edit import CageEdit
 from .edits.obstacle import insert_obstacle
 from .pieces import component_piece
@@ -39,21 +38,21 @@ class Cage:
             TypeError: If the vertices are not numbers or the faces not sequences of integers.
             ValueError: If the cage is not what the class promises; the text names the culprit.
         """
-        positions = as_vertices(vertices)
-        face_start, face_vertex = as_loops(faces)
+        positions = as_points(vertices, "vertices", rows="vertex_count", widths=(3, 2))
+        face_start, face_vertex = as_loops(faces, "the cage")
         if not (np.isfinite(tolerance) and 0.0 < tolerance < 0.1):
             raise ValueError(f"tolerance must lie between 0 and 0.1, got {tolerance}")
-        validation.check_loops(positions, face_start, face_vertex, simple=True)
+        topology.check_loops(positions, face_start, face_vertex, simple=True)
         self.tolerance = float(tolerance)
         self.diameter = float(np.linalg.norm(positions.max(axis=0) - positions.min(axis=0)))
         self.mesh = PolygonMesh(positions, face_start, face_vertex)
-        validation.check_boundary(self.mesh, self.length_tolerance)
-        normals = self.mesh.face_area_vector / np.linalg.norm(self.mesh.face_area_vector, axis=1, keepdims=True)
-        validation.check_planarity(self.mesh, normals, self.length_tolerance)
+        topology.check_boundary(self.mesh, self.length_tolerance)
+        normals = units(self.mesh.face_area_vector)
+        topology.check_planarity(self.mesh, normals, self.length_tolerance)
         self.walls: tuple[Wall, ...] = face_walls(positions, face_start, face_vertex, normals)
         self.face_wall = np.arange(self.face_count)
         self.face_side = np.zeros(self.face_count, dtype=np.int64)
-        validation.check_crossings(self)
+        topology.check_crossings(self)
         self._freeze()
 
     @classmethod
@@ -227,11 +226,11 @@ class Cage:
             ValueError: If the cage is not a closed, oriented manifold of planar polygons, in 2D of segments, around a
                 positive volume.
         """
-        validation.check_loops(self.vertices, self.mesh.face_start, self.mesh.face_vertex, simple=False)
-        validation.check_topology(self.mesh)
+        topology.check_loops(self.vertices, self.mesh.face_start, self.mesh.face_vertex, simple=False)
+        topology.check_topology(self.mesh)
         normals = np.array([wall.normal for wall in self.walls])[self.face_wall]
-        validation.check_planarity(self.mesh, normals, self.length_tolerance)
-        validation.check_volume(self.mesh)
+        topology.check_planarity(self.mesh, normals, self.length_tolerance)
+        topology.check_volume(self.mesh)
 
     def winding_numbers(self, points: np.ndarray) -> np.ndarray:
         """Winding number of each point about each component.
@@ -284,7 +283,7 @@ class Cage:
             TypeError: If the face is not an integer or the distance not a number.
             ValueError: If the face cannot be extruded or something is in its way; the text names the culprit.
         """
-        return extension.extrude(self, face, distance)
+        return extrusion.extrude(self, face, distance)
 
     def move_face(self, face: int, distance: float) -> CageEdit:
         """Move a face outward along its normal, its neighbours growing with it; the cage stays as it is.
@@ -300,7 +299,7 @@ class Cage:
             TypeError: If the face is not an integer or the distance not a number.
             ValueError: If a neighbour would not stay planar, or something is in its way; the text names the culprit.
         """
-        return extension.move_face(self, face, distance)
+        return extrusion.move_face(self, face, distance)
 
     def insert(self, obstacle: Cage) -> CageEdit:
         """Take the room of an obstacle from the body; the cage stays as it is.

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry import units
 from ..section import BladePlane
 
 
@@ -48,8 +49,7 @@ def face_walls(vertices: np.ndarray, face_start: np.ndarray, face_vertex: np.nda
     corner = vertices[face_vertex]
     origin = np.add.reduceat(corner, face_start[:-1], axis=0) / size[:, None]
     first = corner[face_start[:-1] + 1] - corner[face_start[:-1]]
-    first -= np.einsum("ij,ij->i", first, normals)[:, None] * normals
-    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    first = units(first - np.einsum("ij,ij->i", first, normals)[:, None] * normals)
     axes = first[:, None] if vertices.shape[1] == 2 else np.stack([first, np.cross(normals, first)], axis=1)
     return tuple(Wall(origin[i], axes[i], normals[i], two_sided=False) for i in range(len(size)))
 

@@ -18,7 +18,7 @@ from scipy.ndimage import label
 from scipy.spatial import cKDTree
 from scipy.stats import qmc
 
-from ..cage import simplex_distances
+from ..geometry import simplex_distances
 
 _CELL_POINTS = 3  # of the dense sample in each of its cells
 _CELLS = 16  # of the dense sample for each quadrature point

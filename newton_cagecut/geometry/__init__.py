@@ -1,25 +1,56 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""Plain geometry in NumPy and float64, which knows of no cage: meshes, triangulation, winding numbers, distances."""
+"""Plain geometry in NumPy and float64, which knows of no cage.
 
-from .distances import edge_distances, nearest_on_edges, nearest_on_triangles
+Meshes, triangulation, winding numbers, distances, overlaps, vectors, and the checks of arguments that everything else
+makes.
+"""
+
+from .arguments import as_index, as_integers, as_loops, as_number, as_points, as_vector, check_finite
+from .distances import (
+    edge_distances,
+    nearest_on_edges,
+    nearest_on_triangles,
+    plane_gaps,
+    simplex_distances,
+    triangle_distances,
+)
 from .face_triangles import triangulate_faces
 from .holes import bridge_holes, contains_point, signed_area
 from .lift import lifted
+from .overlaps import edge_pierces, near_pairs, point_touches, segments_meet
 from .polygon_mesh import PolygonMesh
 from .triangulate import triangulate
+from .vectors import dots, triangle_normals, units
 from .winding import winding_numbers
 
 __all__ = [
     "PolygonMesh",
+    "as_index",
+    "as_integers",
+    "as_loops",
+    "as_number",
+    "as_points",
+    "as_vector",
     "bridge_holes",
+    "check_finite",
     "contains_point",
+    "dots",
     "edge_distances",
+    "edge_pierces",
     "lifted",
+    "near_pairs",
     "nearest_on_edges",
     "nearest_on_triangles",
+    "plane_gaps",
+    "point_touches",
+    "segments_meet",
     "signed_area",
+    "simplex_distances",
+    "triangle_distances",
+    "triangle_normals",
     "triangulate",
     "triangulate_faces",
+    "units",
     "winding_numbers",
 ]

@@ -11,18 +11,28 @@ from collections.abc import Callable
 import numpy as np
 import warp as wp
 
-from ..cage import Cage, CageEdit, check_inside
-from .cache.domain import Domain
-from .cache.incremental import run_concerned
-from .cache.snapshot import CoordinatesSnapshot, edited_arrays
-from .cache.storage import load_walker, save_walker
-from .cache.walk_cache import Walker
+from ..cage import Cage, CageEdit
+from .cache.domain import Domain, domain_of
+from .cache.domain_state import DomainState
+from .cache.further_points import weights_of
+from .cache.incremental import find_concerned, run_concerned
+from .cache.placement import Placement
+from .cache.snapshot import CoordinatesSnapshot
+from .cache.storage import load_cache, save_cache
+from .cache.walk_cache import WalkCache
 from .journal import Journal
 from .options import WalkOptions
 from .point_change import PointChange
-from .point_checks import checked_indices, checked_keys, checked_points
+from .point_checks import (
+    checked_change,
+    checked_indices,
+    checked_keys,
+    checked_points,
+    require_uncovered,
+    require_vertex_room,
+)
+from .resolve.point_weights import PointWeights
 from .stats import UpdateStats
-from .walks.landing import LANDING_DTYPES
 
 
 class HarmonicCoordinates:
@@ -41,12 +51,14 @@ class HarmonicCoordinates:
         seed: Seed of all walks. The same seed on the same walls gives the same weights, bit for bit.
         gradients: Whether to estimate the weights' gradients: for all points, or those of a mask, shape (point_count,).
         cuttable: Whether to keep the walk cache that updates need (by default 64 bytes a walk, 32 in the plane).
-        device: Where to walk; Warp's current device by default.
+        device: Where to walk; Warp's current device by default, or the domain's.
         correction: "harmonic" (control variates), "affine" (paper, equation 5) or "none" (plain means).
         bounds: Bounding volume of a walk: "dop18", "dop26", "aabb" or "sphere". Smaller ones send more walks to be
             walked again; the results are identical.
-        distance: "grid" (candidate grid) or "all" (every wall); the results are identical.
-        quads: "mean_value" (paper, equation 4) or "harmonic" for convex quads of the cage.
+        distance: "grid" (candidate grid) or "all" (every wall); the results are identical. By default "grid", or what
+            the domain has.
+        quads: "mean_value" (paper, equation 4) or "harmonic" for convex quads of the cage. By default "mean_value", or
+            what the domain has.
         epsilon: Distance at which a walk lands, relative to half of the longest side of the cage's bounding box.
         max_steps: Cap on a walk's steps; capped walks land on the nearest wall and are counted.
         degree: Highest degree of the harmonic control variates, 1 to 3.
@@ -57,7 +69,7 @@ class HarmonicCoordinates:
         progress: Called with the finished fraction of the first walk, between 0 and 1.
 
     Raises:
-        ValueError: An option is out of its range, or points lie outside the cage.
+        ValueError: An option is out of its range, or another one than the domain has, or points lie outside the cage.
     """
 
     def __init__(
@@ -72,8 +84,8 @@ class HarmonicCoordinates:
         *,
         correction: str = "harmonic",
         bounds: str = "dop18",
-        distance: str = "grid",
-        quads: str = "mean_value",
+        distance: str | None = None,
+        quads: str | None = None,
         epsilon: float = 1.0e-4,
         max_steps: int = 256,
         degree: int = 3,
@@ -82,65 +94,63 @@ class HarmonicCoordinates:
         vertex_capacity: int | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> None:
-        options = WalkOptions(walks, seed, correction, bounds, distance, quads, epsilon, max_steps, degree)
-        if isinstance(cage, Domain):
-            self.domain = cage
-        else:
-            self.domain = Domain(cage, quads=quads, distance=distance, device=wp.get_device(device))
-        self._cage = self.domain.cage
-        points = checked_points(points, self.domain.dimension)
-        keys = checked_keys(point_keys, len(points), len(self._cage.walls))
-        outside = check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
-        self._walker = Walker(
-            self.domain,
+        options = WalkOptions(walks, seed, correction, bounds, epsilon, max_steps, degree)
+        self.domain = domain_of(cage, quads=quads, distance=distance, device=device)
+        self._state = state = self.domain.now
+        points = checked_points(points, state.cage.dimension)
+        count = len(points)
+        placement = _placed(state, PointChange(np.arange(count), points, point_keys), capacity=count)
+        require_vertex_room(state.cage.vertex_count, vertex_capacity)
+        self._cache = WalkCache(
+            state,
             options,
-            point_capacity=max(point_capacity or 0, len(points)),
+            point_capacity=max(point_capacity or 0, count),
             vertex_capacity=vertex_capacity,
-            gradient_mask=np.broadcast_to(np.asarray(gradients, dtype=bool), len(points)),
+            gradient_mask=np.broadcast_to(np.asarray(gradients, dtype=bool), count),
             cuttable=cuttable,
         )
-        self._walker.place(np.arange(len(points)), points, keys, outside=outside)
-        self._walker.run_all(self._new_stats(), progress=progress)
+        self._cache.place(placement, Journal())
+        self._cache.stages(state, self._new_stats()).run_all(progress=progress)
 
     @property
     def cage(self) -> Cage:
         """The cage that the weights are for: that of the last update or recompute."""
-        return self._cage
+        return self._state.cage
 
     @property
     def point_count(self) -> int:
         """Number of points, those that were removed included: rows of the weights."""
-        return self._walker.point_count
+        return self._cache.point_count
 
     @property
     def removed_points(self) -> np.ndarray:
         """Numbers of the points that were removed, ascending; :meth:`set_points` can use them again."""
-        return self._walker.removed_points
+        return self._cache.removed_points
 
     @property
     def walks(self) -> int:
         """Walks a point."""
-        return self._walker.options.walks
+        return self._cache.options.walks
 
     @property
     def weights(self) -> np.ndarray:
         """The weights, shape (point_count, cage.vertex_count), float32; a copy."""
-        return self._walker.weights.numpy()[: self.point_count, : self.cage.vertex_count].copy()
+        return self._cache.weights.weights.numpy()[: self.point_count, : self.cage.vertex_count].copy()
 
     @property
     def gradients(self) -> np.ndarray:
         """The weights' gradients [1/m] of points that have them, shape (gradient_count, vertex_count, dimension)."""
-        return self._walker.gradients.numpy()[:, : self.cage.vertex_count, : self.domain.dimension].copy()
+        return self._cache.weights.gradients.numpy()[:, : self.cage.vertex_count, : self.cage.dimension].copy()
 
     @property
     def weights_array(self) -> wp.array:
         """The weights on the device, shape (point_capacity, vertex_capacity); unused entries are 0."""
-        return self._walker.weights
+        return self._cache.weights.weights
 
     @property
     def gradients_array(self) -> wp.array:
         """The gradients [1/m] on the device, vec3, shape (gradient_count, vertex_capacity); unused entries are 0."""
-        return self._walker.gradients
+        return self._cache.weights.gradients
 
     @property
     def degrees(self) -> np.ndarray:
@@ -148,28 +158,28 @@ class HarmonicCoordinates:
 
         Shape (point_count,).
         """
-        return self._walker.degrees.numpy()[: self.point_count].copy()
+        return self._cache.weights.degrees.numpy()[: self.point_count].copy()
 
     @property
     def lowest_weights(self) -> np.ndarray:
         """Least weight of each point, 0 where none is negative: controls can overshoot; shape (point_count,)."""
-        return self._walker.lowest.numpy()[: self.point_count].copy()
+        return self._cache.weights.lowest.numpy()[: self.point_count].copy()
 
     @property
     def landings(self) -> dict[str, np.ndarray]:
         """The cached landings: "key", "point", "face", "edge", "param", a row a walk; copies."""
-        landings = self._cache_of("landings").landings
-        count = self.point_count * self.walks
-        return {name: getattr(landings, name).numpy()[:count].copy() for name in LANDING_DTYPES[self.domain.dimension]}
+        arrays = self._cache_of("landings").records.landing_arrays
+        return {name: array.numpy()[: self.point_count * self.walks].copy() for name, array in arrays.items()}
 
     @property
     def bounds(self) -> np.ndarray:
         """The cached bounds of the walks, quantised, a row a walk; a copy."""
-        return self._cache_of("bounds").bounds.numpy()[:, : self.point_count * self.walks].T.copy()
+        return self._cache_of("bounds").records.bounds.numpy()[:, : self.point_count * self.walks].T.copy()
 
     def memory(self) -> dict[str, int]:
         """Bytes of each part on the device."""
-        return self._walker.memory()
+        state = self._state
+        return self._cache.memory() | {"walls": state.walls.byte_count, "grid": state.grid.byte_count}
 
     def update(
         self, edit: CageEdit, *, points: PointChange | None = None, journal: Journal | None = None
@@ -191,34 +201,29 @@ class HarmonicCoordinates:
                 points, the cage has too many vertices or extensions, or a point cannot be set. Nothing has changed
                 then, nor has it after any other failure.
         """
-        self._cache_of("update")
-        with Journal.within(journal) as journal:
-            self._keep(journal)
-            stats = self._updated(edit)
-            if points is not None and len(points.indices):
-                added = self.set_points(points.indices, points.points, points.keys, journal=journal)
-                stats.seconds["new_points"] = added.total_seconds
-        return stats
-
-    def _updated(self, edit: CageEdit) -> UpdateStats:
-        walker = self._walker
-        if edit.before is not self._cage:
+        cache = self._cache_of("update")
+        if edit.before is not self.cage:
             raise ValueError(
                 "update: the edit starts from another cage than the coordinates hold; pass every edit, in order"
             )
-        walker.require_vertices(edit.cage.vertex_count)
-        walker.require_inside(edit)
+        require_vertex_room(edit.cage.vertex_count, cache.vertex_capacity)
+        require_uncovered(edit, cache.keys, cache.rest)
         stats = self._new_stats()
         with stats.time("walls", self.domain.device):
-            change = self.domain.apply(edit)
-            walker.grow_vertices(edit.cage.vertex_count)
-            walker.free_points(edit.retired_walls)
-            if change.regrouped:
-                walker.group_points()
-        self._cage = edit.cage
-        if edit.is_empty:
-            return stats
-        run_concerned(walker, change, stats)
+            after = self.domain.after(edit)
+            weights = cache.weights.grown(edit.cage.vertex_count)
+            regrouped = cache.regrouped(after, retired_walls=edit.retired_walls, pieces_changed=after.change.regrouped)
+        added = (
+            None if points is None else _placed(after, points, count=cache.point_count, capacity=cache.point_capacity)
+        )
+        concerned = None if edit.is_empty else find_concerned(cache, after, stats)
+        with Journal.within(journal) as journal:
+            self._take_over(after, weights, journal)
+            cache.place(regrouped, journal)
+            if concerned is not None:
+                run_concerned(cache, after, concerned, stats, journal)
+            if added is not None and len(added.indices):
+                stats.seconds["new_points"] = self._run_placed(added, journal).total_seconds
         return stats
 
     def recompute(self, *, journal: Journal | None = None) -> UpdateStats:
@@ -227,17 +232,25 @@ class HarmonicCoordinates:
         Args:
             journal: Journal of a larger edit that this one is a part of, and that can take it back.
         """
-        with Journal.within(journal) as journal:
-            self._keep(journal)
-            return self._recomputed()
-
-    def _recomputed(self) -> UpdateStats:
+        cache, state = self._cache, self.domain.now
+        require_vertex_room(state.cage.vertex_count, cache.vertex_capacity)
+        weights, removed = cache.weights.grown(state.cage.vertex_count), cache.removed_points
+        regrouped = cache.regrouped(state, retired_walls=np.zeros(0, dtype=np.int64), pieces_changed=True)
+        records = cache.records and (cache.records.copied() if len(removed) else cache.records.fresh())
         stats = self._new_stats()
-        self._cage = self.domain.cage
-        self._walker.require_vertices(self._cage.vertex_count)
-        self._walker.grow_vertices(self._cage.vertex_count)
-        self._walker.group_points()
-        self._walker.run_all(stats)
+        with Journal.within(journal) as journal:
+            self._take_over(state, weights, journal)
+            cache.keep_points(journal)
+            journal.keep_attributes(cache, "records")
+            journal.keep(*weights.arrays.values())
+            cache.place(regrouped, journal)
+            cache.records = records
+            stages = cache.stages(state, stats)
+            stats.rewalked = stats.walk_count
+            if len(removed):
+                stages.run_points(np.setdiff1d(np.arange(self.point_count), removed))
+            else:
+                stages.run_all()
         return stats
 
     def snapshot(self) -> CoordinatesSnapshot:
@@ -246,7 +259,7 @@ class HarmonicCoordinates:
         Raises:
             ValueError: There is no walk cache.
         """
-        return CoordinatesSnapshot.of(self._cache_of("snapshot"), self.domain)
+        return CoordinatesSnapshot.of(self._cache_of("snapshot"), self._state, self.domain)
 
     def restore(self, snapshot: CoordinatesSnapshot, *, journal: Journal | None = None) -> None:
         """Undo every edit since a snapshot: cage, walls, walks and weights are the same again, bit for bit.
@@ -258,12 +271,12 @@ class HarmonicCoordinates:
         Raises:
             ValueError: The snapshot is of other coordinates. Nothing has changed then.
         """
-        if snapshot.owner is not self._walker:
+        if snapshot.owner is not self._cache:
             raise ValueError("restore: the snapshot is of other coordinates; restore those, or take one of these")
         with Journal.within(journal) as journal:
-            self._keep(journal)
-            snapshot.restore()
-            self._cage = snapshot.cage
+            journal.keep_attributes(self, "_state")
+            self._state = snapshot.state
+            snapshot.restore(self.domain, journal)
 
     def save(self, path: str | os.PathLike) -> None:
         """Write the coordinates to a file, walks and cuts so far included, for :meth:`load`.
@@ -275,12 +288,12 @@ class HarmonicCoordinates:
             OSError: The file cannot be written; one that was there is as it was.
             ValueError: There is no walk cache, or a shared domain has gone on to another cage.
         """
-        walker = self._cache_of("save")
-        if self.domain.cage is not self._cage:
+        cache = self._cache_of("save")
+        if self.domain.now is not self._state:
             raise ValueError(
                 "save: the shared domain holds a later cage than these coordinates; recompute() them first"
             )
-        save_walker(walker, path)
+        save_cache(cache, self.domain, path)
 
     @classmethod
     def load(
@@ -308,8 +321,9 @@ class HarmonicCoordinates:
                 options, which the text names; or its walks do not repeat themselves on this device.
         """
         coordinates = cls.__new__(cls)
-        walker = load_walker(path, cage, points, device=wp.get_device(device), options=options)
-        coordinates._walker, coordinates.domain, coordinates._cage = walker, walker.domain, cage
+        points = checked_points(points, cage.dimension)
+        cache, domain = load_cache(path, cage, points, device=wp.get_device(device), options=options)
+        coordinates._cache, coordinates.domain, coordinates._state = cache, domain, domain.now
         return coordinates
 
     def set_points(
@@ -332,22 +346,10 @@ class HarmonicCoordinates:
             ValueError: A point lies outside the cage, an index is twice there or leaves a gap, a key is of no wall, or
                 there are more points than were reserved. Nothing has changed then.
         """
-        walker = self._cache_of("set_points")
-        points = checked_points(points, self.domain.dimension)
-        indices = checked_indices(indices, len(points))
-        added = np.sort(indices[indices >= self.point_count])
-        if not np.array_equal(added, self.point_count + np.arange(len(added))):
-            raise ValueError(f"indices: there are {self.point_count} points; new ones must follow without gaps")
-        keys = checked_keys(point_keys, len(points), len(self.domain.cage.walls))
-        walker.require_points(int(indices.max(initial=-1)) + 1)
-        outside = check_inside(self.domain.cage, points, which=np.flatnonzero(keys < 0))
+        cache, change = self._cache_of("set_points"), PointChange(indices, points, point_keys)
+        placement = _placed(self._state, change, count=cache.point_count, capacity=cache.point_capacity)
         with Journal.within(journal) as journal:
-            self._keep(journal)
-            walker.place(indices, points, keys, outside=outside)
-            stats = self._new_stats()
-            stats.rewalked = len(indices) * self.walks
-            walker.run_points(indices, stats)
-        return stats
+            return self._run_placed(placement, journal)
 
     def remove_points(self, indices: np.ndarray, *, journal: Journal | None = None) -> None:
         """Remove points: from now on their weights and gradients are 0, and nothing is walked for them.
@@ -362,7 +364,7 @@ class HarmonicCoordinates:
             TypeError: The indices are not whole numbers.
             ValueError: An index is of no point, is there twice, or was removed before. Nothing has changed then.
         """
-        walker = self._cache_of("remove_points")
+        cache = self._cache_of("remove_points")
         indices = checked_indices(indices)
         gone = indices[(indices >= self.point_count) | np.isin(indices, self.removed_points)]
         if len(gone):
@@ -370,8 +372,7 @@ class HarmonicCoordinates:
                 f"remove_points: there is no point {gone[0]}; there are {self.point_count}, less removed ones"
             )
         with Journal.within(journal) as journal:
-            self._keep(journal)
-            walker.remove(indices)
+            cache.remove(indices, journal)
 
     def boundary_weights(self, points: np.ndarray, point_keys: np.ndarray, *, walks: int = 1024) -> np.ndarray:
         """Weights of points on the cage's walls, on the faces as they are.
@@ -387,8 +388,8 @@ class HarmonicCoordinates:
         Raises:
             ValueError: A key is of no wall.
         """
-        count = len(checked_points(points, self.domain.dimension))
-        checked_keys(point_keys, count, len(self.domain.cage.walls), lowest=0)
+        count = len(checked_points(points, self.cage.dimension))
+        checked_keys(point_keys, count, len(self.cage.walls), lowest=0)
         return self.weights_at(points, point_keys, walks=walks)
 
     def weights_at(self, points: np.ndarray, point_keys: np.ndarray | None = None, *, walks: int = 1024) -> np.ndarray:
@@ -405,33 +406,43 @@ class HarmonicCoordinates:
         Raises:
             ValueError: A point lies outside the cage, or a key is of no wall.
         """
-        options = self._walker.options
-        coordinates = HarmonicCoordinates(
-            self.domain,
-            points,
-            walks,
-            options.seed,
-            cuttable=False,
-            epsilon=options.epsilon,
-            point_keys=point_keys,
-        )
-        return coordinates.weights
+        own = self._cache.options
+        options = WalkOptions(walks, own.seed, epsilon=own.epsilon)
+        points = checked_points(points, self.cage.dimension)
+        count = len(points)
+        placement = _placed(self._state, PointChange(np.arange(count), points, point_keys), capacity=count)
+        return weights_of(self._state, placement, options)
 
-    def _cache_of(self, wanted: str) -> Walker:
-        if not self._walker.cuttable:
+    def _cache_of(self, wanted: str) -> WalkCache:
+        if self._cache.records is None:
             raise ValueError(f"{wanted}: these coordinates were made with cuttable=False and keep no walk cache")
-        return self._walker
-
-    def _keep(self, journal: Journal) -> None:
-        """Keep everything that edits overwrite."""
-        walker, domain = self._walker, self.domain
-        journal.keep_attributes(self, "_cage")
-        journal.keep_attributes(domain, "cage", "faces", "faces_before", "_last")
-        journal.keep_attributes(domain.walls, "triangle_count", "_rows", "data")
-        journal.keep_attributes(domain.grid, "cells", "_nearest", "_built_size", "_farthest")
-        journal.keep_attributes(walker, "point_count", "_rest", "weights", "gradients", "vertex_capacity", "landings")
-        walker._rest = walker._rest.copy()
-        journal.keep(*(array for array in edited_arrays(walker).values() if array.size))
+        return self._cache
 
     def _new_stats(self) -> UpdateStats:
         return UpdateStats(self.walks * (self.point_count - len(self.removed_points)))
+
+    def _take_over(self, state: DomainState, weights: PointWeights, journal: Journal) -> None:
+        """Go on to a state of the domain, and to the room for weights that it needs."""
+        journal.keep_attributes(self, "_state")
+        journal.keep_attributes(self.domain, "now")
+        journal.keep_attributes(self._cache, "weights")
+        self._state = self.domain.now = state
+        self._cache.weights = weights
+
+    def _run_placed(self, placement: Placement, journal: Journal) -> UpdateStats:
+        """Set points and walk for them."""
+        cache, indices = self._cache, placement.indices
+        work = cache.work_of(indices)
+        cache.keep_walks(work, journal)
+        cache.keep_weights(indices, journal)
+        cache.place(placement, journal)
+        stats = self._new_stats()
+        stats.rewalked = work.count
+        cache.stages(self._state, stats).run_points(indices)
+        return stats
+
+
+def _placed(state: DomainState, change: PointChange, *, count: int = 0, capacity: int) -> Placement:
+    """Points that were passed, checked, among the walls of a state."""
+    change, outside = checked_change(change, state.cage, count=count, capacity=capacity)
+    return Placement.of(state, change.indices, change.points, change.keys, outside=outside)

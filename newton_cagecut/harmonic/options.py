@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .walks.bounds import BOUNDS
-
+BOUNDS = ("dop18", "dop26", "aabb", "sphere")
 CORRECTIONS = ("harmonic", "affine", "none")
 DISTANCES = ("grid", "all")
 QUADS = ("mean_value", "harmonic")
@@ -18,7 +17,7 @@ QUADS = ("mean_value", "harmonic")
 
 @dataclass(frozen=True)
 class WalkOptions:
-    """Options of the walks and of the resolve; see ``HarmonicCoordinates``.
+    """Options of the walks and of the resolve; see ``HarmonicCoordinates``. Those of the domain are its own.
 
     Raises:
         ValueError: A value is out of its range; the message names the range.
@@ -26,23 +25,15 @@ class WalkOptions:
 
     walks: int
     seed: int
-    correction: str
-    bounds: str
-    distance: str
-    quads: str
-    epsilon: float
-    max_steps: int
-    degree: int
+    correction: str = "harmonic"
+    bounds: str = "dop18"
+    epsilon: float = 1.0e-4
+    max_steps: int = 256
+    degree: int = 3
 
     def __post_init__(self) -> None:
-        for name, choices in (
-            ("correction", CORRECTIONS),
-            ("bounds", BOUNDS),
-            ("distance", DISTANCES),
-            ("quads", QUADS),
-        ):
-            if getattr(self, name) not in choices:
-                raise ValueError(f"{name} must be one of {', '.join(choices)}, not {getattr(self, name)!r}")
+        require_choice("correction", self.correction, CORRECTIONS)
+        require_choice("bounds", self.bounds, BOUNDS)
         for name, low, high in (
             ("walks", 1, 1 << 24),
             ("seed", 0, (1 << 32) - 1),
@@ -54,3 +45,18 @@ class WalkOptions:
                 raise ValueError(f"{name} must be a whole number from {low} to {high}, not {value!r}")
         if not 1.0e-6 <= self.epsilon <= 0.1:
             raise ValueError(f"epsilon must lie between 1e-6 and 0.1 (relative to the cage), not {self.epsilon!r}")
+
+
+def require_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
+    """Refuse a value that is none of the choices.
+
+    Args:
+        name: Name of the option.
+        value: Its value.
+        choices: The values that there are.
+
+    Raises:
+        ValueError: The value is another one.
+    """
+    if value not in choices:
+        raise ValueError(f"{name} must be one of {', '.join(choices)}, not {value!r}")

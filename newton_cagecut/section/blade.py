@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry import lifted
+from ..geometry import as_vector, dots, lifted
 
 _LEAST_SINE = 1e-3
 
@@ -45,7 +45,7 @@ class Blade:
             ValueError: If something is not finite, a direction is zero or both are parallel, or the blade has an edge
                 or a width in the plane.
         """
-        self.origin = _as_origin(origin)
+        self.origin = as_vector(origin, "the blade's origin")
         if self.dimension == 2:
             direction = _only_direction(edge, direction, width)
             self.edge = np.zeros(2)
@@ -154,7 +154,7 @@ class BladePlane:
         Args:
             points: Points, shape (point_count, dimension) [m].
         """
-        return _dot(points - self.origin, self.normal)
+        return dots(points - self.origin, self.normal)
 
     def coordinates(self, points: np.ndarray) -> np.ndarray:
         """Coordinates (a, s) along the edge and the direction, shape (point_count, 2) [m].
@@ -163,7 +163,7 @@ class BladePlane:
             points: Points of the plane, shape (point_count, dimension) [m].
         """
         offset = points - self.origin
-        along_edge, along_direction = _dot(offset, self.edge), _dot(offset, self.direction)
+        along_edge, along_direction = dots(offset, self.edge), dots(offset, self.direction)
         cosine = float(self.edge @ self.direction)
         square = 1.0 - cosine * cosine
         a = (along_edge - cosine * along_direction) / square
@@ -196,7 +196,7 @@ def clear_turn(plane: BladePlane, points: np.ndarray, tolerance: float) -> Blade
         tolerance: Distance to keep [m].
     """
     across = plane.across
-    height, ahead = plane.distance(points), _dot(points - plane.origin, across)
+    height, ahead = plane.distance(points), dots(points - plane.origin, across)
     close = (ahead > 8.0 * tolerance) & (np.abs(height) < 0.25 * ahead)
     height, ahead = height[close], ahead[close]
     if len(height) == 0 or np.abs(height).min() > tolerance:
@@ -216,12 +216,6 @@ def _nearest_gap(position: np.ndarray, margin: np.ndarray) -> float:
     lowest, highest = np.concatenate([[-np.inf], high]), np.concatenate([low, [np.inf]])
     nearest = np.clip(0.0, lowest, highest)[lowest <= highest]
     return float(nearest[np.argmin(np.abs(nearest))])
-
-
-def _dot(vectors: np.ndarray, axis: np.ndarray) -> np.ndarray:
-    """Dot products by element-wise arithmetic, which does not depend on a vector's place in the array."""
-    total = vectors[:, 0] * axis[0] + vectors[:, 1] * axis[1]
-    return total if len(axis) == 2 else total + vectors[:, 2] * axis[2]
 
 
 def _normal(edge: np.ndarray, direction: np.ndarray) -> np.ndarray:
@@ -262,27 +256,8 @@ def _as_width(width: float | tuple[float, float] | None) -> tuple[float, float]:
     return heel, tip
 
 
-def _as_origin(value: np.ndarray) -> np.ndarray:
-    vector = _as_numbers(value, "origin", "three numbers, or two in the plane")
-    if vector.shape not in ((3,), (2,)):
-        raise ValueError(f"the blade's origin must have shape (3,), or (2,) in the plane, got {vector.shape}")
-    return vector
-
-
-def _as_numbers(value: np.ndarray, name: str, what: str) -> np.ndarray:
-    try:
-        vector = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise TypeError(f"the blade's {name} must be {what}, got {value!r}") from None
-    if not np.isfinite(vector).all():
-        raise ValueError(f"the blade's {name} is not finite: {vector.tolist()}")
-    return vector
-
-
 def _as_unit(value: np.ndarray, name: str, dimension: int) -> np.ndarray:
-    vector = _as_numbers(value, name, "three numbers" if dimension == 3 else "two numbers")
-    if vector.shape != (dimension,):
-        raise ValueError(f"the blade's {name} must have shape ({dimension},), as its origin has, got {vector.shape}")
+    vector = as_vector(value, f"the blade's {name}", dimension=dimension)
     largest = float(np.abs(vector).max())
     if largest == 0.0:
         raise ValueError(f"the blade's {name} is zero; give it a direction")

@@ -14,12 +14,20 @@ from functools import cached_property
 import numpy as np
 
 from ..cage import Wall
-from ..geometry import PolygonMesh, lifted, winding_numbers
+from ..geometry import (
+    PolygonMesh,
+    as_integers,
+    as_points,
+    check_finite,
+    lifted,
+    triangle_normals,
+    units,
+    winding_numbers,
+)
 
 _CANCELLED = 1e-9
-
-
 _FLAT = 1e-13
+_NO_LENGTH = 1e-30
 
 
 class Surface:
@@ -50,7 +58,7 @@ class Surface:
             TypeError: If something is not numbers, or the triangles not integers.
             ValueError: If a shape, a value or an index is wrong; the text names the culprit.
         """
-        self.points = _as_floats(points, "points", (3, 2))
+        self.points = _as_rows(points, "points", (3, 2))
         self.triangles = _as_triangles(triangles, len(self.points))
         if self.dimension == 2:
             _check_flat(self.points[self.triangles], normals)
@@ -145,9 +153,7 @@ class Surface:
             walls: The cage's walls.
         """
         if self.normals is None:
-            own = self.mesh.face_area_vector
-            length = np.linalg.norm(own, axis=1, keepdims=True)
-            corners = np.repeat((own / np.where(length > 0.0, length, 1.0))[:, None], 3, axis=1)
+            corners = np.repeat(units(self.mesh.face_area_vector)[:, None], 3, axis=1)
         else:
             corners = self.normals[self.triangles]
         for number in np.unique(self.triangle_cap[self.triangle_cap >= 0]).tolist():
@@ -197,14 +203,14 @@ class Surface:
         row[points] = np.arange(len(points))
         around, corner = np.nonzero(row[self.triangles] >= 0)
         corners = self.points[self.triangles[around]]
-        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normal = triangle_normals(corners)
         labels, label = np.unique(self.triangle_cap[around], return_inverse=True)
         sums, sizes = np.zeros((len(points), len(labels), 3)), np.zeros((len(points), len(labels)))
         where = row[self.triangles[around, corner]], label
         np.add.at(sums, where, normal)
         np.add.at(sizes, where, np.linalg.norm(normal, axis=1))
         sums[np.linalg.norm(sums, axis=2) <= _CANCELLED * sizes] = 0.0
-        return _unit(-_unit(sums).sum(axis=1))
+        return units(-units(sums, least=_NO_LENGTH).sum(axis=1), least=_NO_LENGTH)
 
     def _directions_from_border(self, points: np.ndarray) -> np.ndarray:
         """The same for a flat mesh: minus the sum of the normals of the border's two edges at each point.
@@ -214,12 +220,13 @@ class Surface:
         mesh = self.mesh
         border = mesh.twin < 0
         start, end = mesh.face_vertex[border], mesh.destination[border]
-        outward = _unit(self.points[end] - self.points[start])[:, ::-1] * [1.0, -1.0]
+        along = units(self.points[end] - self.points[start], least=_NO_LENGTH)
+        outward = along[:, ::-1] * [1.0, -1.0]
         sums = np.zeros((self.point_count, 2))
         for ends in (start, end):
             np.add.at(sums, ends, outward)
         sums[np.linalg.norm(sums, axis=1) <= _CANCELLED] = 0.0
-        return _unit(-sums[points])
+        return units(-sums[points], least=_NO_LENGTH)
 
     @cached_property
     def triangle_solid(self) -> np.ndarray:
@@ -243,11 +250,6 @@ class Surface:
         return solid[mesh.face_component]
 
 
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return vectors / np.where(length > 1.0e-30, length, 1.0)
-
-
 def _check_flat(corners: np.ndarray, normals: np.ndarray | None) -> None:
     """Refuse triangles that are clockwise, and normals; corners have the shape (triangle_count, 3, 2)."""
     if normals is not None:
@@ -260,35 +262,23 @@ def _check_flat(corners: np.ndarray, normals: np.ndarray | None) -> None:
         )
 
 
-def _as_floats(values: np.ndarray, name: str, widths: tuple[int, ...]) -> np.ndarray:
-    shape = ", or ".join(f"(point_count, {width})" for width in widths)
-    try:
-        array = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise TypeError(f"{name} of the surface must be numbers of shape {shape}: {error}") from None
-    if array.ndim != 2 or array.shape[1] not in widths:
-        raise ValueError(f"{name} of the surface must have shape {shape}, got {array.shape}")
-    bad = np.flatnonzero(~np.isfinite(array).all(axis=1))
-    if len(bad):
-        raise ValueError(f"{name} of the surface: row {bad[0]} is not finite: {array[bad[0]].tolist()}")
+def _as_rows(values: np.ndarray, name: str, widths: tuple[int, ...]) -> np.ndarray:
+    array = as_points(values, f"{name} of the surface", rows="point_count", widths=widths)
+    check_finite(array, f"{name} of the surface")
     return array
 
 
 def _as_point_values(values: np.ndarray | None, name: str, width: int, count: int) -> np.ndarray | None:
     if values is None:
         return None
-    array = _as_floats(values, name, (width,))
+    array = _as_rows(values, name, (width,))
     if len(array) != count:
         raise ValueError(f"the surface has {count} points but {len(array)} {name}; give each one")
     return array
 
 
 def _as_triangles(values: np.ndarray, point_count: int) -> np.ndarray:
-    array = np.asarray(values)
-    if not np.issubdtype(array.dtype, np.integer):
-        raise TypeError(f"triangles of the surface must be integers, got {array.dtype}")
-    if array.ndim != 2 or array.shape[1] != 3 or len(array) == 0:
-        raise ValueError(f"triangles of the surface must have shape (triangle_count, 3), got {array.shape}")
+    array = as_integers(values, "triangles of the surface", shape=("triangle_count", 3))
     bad = np.flatnonzero(((array < 0) | (array >= point_count)).any(axis=1))
     if len(bad):
         raise ValueError(
@@ -303,9 +293,4 @@ def _as_triangles(values: np.ndarray, point_count: int) -> np.ndarray:
 def _as_labels(values: np.ndarray | None, name: str, count: int) -> np.ndarray:
     if values is None:
         return np.full(count, -1, dtype=np.int32)
-    array = np.asarray(values)
-    if not np.issubdtype(array.dtype, np.integer):
-        raise TypeError(f"{name} of the surface must be integers, got {array.dtype}")
-    if array.shape != (count,):
-        raise ValueError(f"{name} of the surface must have shape ({count},), got {array.shape}")
-    return array.astype(np.int32)
+    return as_integers(values, f"{name} of the surface", shape=(count,)).astype(np.int32)

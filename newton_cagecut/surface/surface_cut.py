@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..geometry import units
 from ..section import BladePlane, ClippedSection, Hinge, Numbering, Opening, Section, clear_front
 from .splitting import cap_triangles, split_triangles
 from .surface import Surface
@@ -237,7 +238,7 @@ class SurfaceCut:
             np.concatenate([base.points, opening.created_positions()[:, : base.dimension]]),
             np.concatenate([kept, added, caps]).astype(np.int32),
             self._carried(opening, base.uvs),
-            None if base.normals is None else _unit(self._carried(opening, base.normals)),
+            None if base.normals is None else units(self._carried(opening, base.normals)),
             np.concatenate([base.triangle_cap, base.triangle_cap[owner], np.full(len(caps), wall, dtype=np.int32)]),
             np.concatenate([base.cap_side, base.cap_side[owner], side]),
             np.concatenate([base.point_key, keys]),
@@ -254,8 +255,3 @@ class SurfaceCut:
         t = ((self._reach - s[low]) / (s[high] - s[low]))[:, None]
         at_tips = at_nodes[low] + t * (at_nodes[high] - at_nodes[low])
         return np.concatenate([values, opening.created_values(at_nodes, at_tips)])
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return vectors / np.where(length > 0.0, length, 1.0)

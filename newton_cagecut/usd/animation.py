@@ -11,6 +11,7 @@ from os import PathLike
 import numpy as np
 from pxr import UsdGeom
 
+from ..geometry import as_points
 from .body_frame import BodyFrame
 from .body_prims import BodyPrims
 from .layers import (
@@ -24,7 +25,7 @@ from .layers import (
     write_arrays,
 )
 from .materials import bind_material
-from .mesh_data import check_mesh, checked_points
+from .mesh_data import check_mesh
 
 
 class AnimationWriter:
@@ -98,7 +99,7 @@ class AnimationWriter:
             RuntimeError: The writer is closed.
             ValueError: The name is taken or no identifier, or the mesh is empty or invalid.
         """
-        points = checked_points("points", points)
+        points = as_points(points, "points", rows="n", widths=(3,))
         counts, indices = flat_faces(faces)
         check_mesh(f"mesh {name}", points, counts, indices)
         mesh = define_mesh(self.stage, self._new_path(name))

@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..geometry import as_points
 from .layers import flat_faces
-from .mesh_data import check_mesh, checked_points
+from .mesh_data import check_mesh
 from .outline import outline_loops
 
 
@@ -53,7 +54,7 @@ class BodyFrame:
         Raises:
             ValueError: The arrays are empty, not finite or do not fit together.
         """
-        points = checked_points(f"body {self.name}: points", self.points)
+        points = self._rows("points")
         triangles = np.asarray(self.triangles, dtype=np.int32)
         if triangles.ndim != 2 or triangles.shape[1] != 3:
             raise ValueError(f"body {self.name}: triangles must have shape (m, 3), got {triangles.shape}")
@@ -61,17 +62,19 @@ class BodyFrame:
         cap = np.full(len(triangles), -1) if self.triangle_cap is None else np.asarray(self.triangle_cap)
         if cap.shape != (len(triangles),):
             raise ValueError(f"body {self.name}: triangle_cap must have shape ({len(triangles)},), got {cap.shape}")
-        rest_points = (
-            points if self.rest_points is None else checked_points(f"body {self.name}: rest_points", self.rest_points)
-        )
+        rest_points = points if self.rest_points is None else self._rows("rest_points")
         if len(rest_points) != len(points):
             raise ValueError(f"body {self.name}: rest_points must have shape {points.shape}, got {rest_points.shape}")
         cage_points = self.cage_points
         if cage_points is not None:
-            cage_points = checked_points(f"body {self.name}: cage_points", cage_points)
+            cage_points = self._rows("cage_points")
             if self.has_plane_cage:
                 outline_loops(f"the cage of body {self.name}", self.cage_faces, len(cage_points))
             else:
                 check_mesh(f"the cage of body {self.name}", cage_points, *flat_faces(self.cage_faces))
         surface = {"points": points, "triangles": triangles, "triangle_cap": cap, "rest_points": rest_points}
         return replace(self, **surface, cage_points=cage_points)
+
+    def _rows(self, name: str) -> np.ndarray:
+        """Return one of the arrays of points as float64, shape ``(n, 3)``."""
+        return as_points(getattr(self, name), f"body {self.name}: {name}", rows="n", widths=(3,))

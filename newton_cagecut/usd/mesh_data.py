@@ -69,22 +69,6 @@ def turn_up(points: np.ndarray, up_axis: str, wanted: str) -> np.ndarray:
     return points @ (_Y_TO_Z.T if wanted == "Z" else _Y_TO_Z)
 
 
-def checked_points(label: str, values: np.ndarray) -> np.ndarray:
-    """Return points as an array of shape ``(n, 3)``, float64.
-
-    Args:
-        label: What the errors call them.
-        values: The points.
-
-    Raises:
-        ValueError: They have another shape.
-    """
-    points = np.asarray(values, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise ValueError(f"{label} must have shape (n, 3), got {points.shape}")
-    return points
-
-
 def check_mesh(label: str, points: np.ndarray, counts: np.ndarray, indices: np.ndarray) -> None:
     """Raise when the arrays are no polygon mesh.
 

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..geometry import triangle_normals
+
 
 def split_caps(
     rest_points: np.ndarray, triangles: np.ndarray, triangle_cap: np.ndarray
@@ -27,7 +29,7 @@ def split_caps(
     count = len(rest_points)
     cap = np.flatnonzero(triangle_cap >= 0)
     _, wall = np.unique(triangle_cap[cap], return_inverse=True)
-    area = area_vectors(rest_points, triangles[cap])
+    area = triangle_normals(rest_points[triangles[cap]].astype(np.float64))
     by_size = np.lexsort((-np.linalg.norm(area, axis=1), wall))
     largest = by_size[np.searchsorted(wall[by_size], wall)]
     side = np.einsum("ij,ij->i", area, area[largest]) < 0.0
@@ -45,20 +47,9 @@ def vertex_normals(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
         points: Vertices, shape ``(n, 3)``.
         triangles: Vertex indices, shape ``(m, 3)``.
     """
-    area = np.repeat(area_vectors(points, triangles), 3, axis=0)
+    area = np.repeat(triangle_normals(points[triangles].astype(np.float64)), 3, axis=0)
     corner = triangles.reshape(-1)
     total = np.stack([np.bincount(corner, area[:, i], len(points)) for i in range(3)], axis=1)
     length = np.linalg.norm(total, axis=1, keepdims=True)
     up = np.array([0.0, 0.0, 1.0])  # of a vertex without triangles that have an area
     return np.where(length > 0.0, total / np.where(length > 0.0, length, 1.0), up).astype(np.float32)
-
-
-def area_vectors(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Return the normal of each triangle times twice its area, shape ``(m, 3)``.
-
-    Args:
-        points: Vertices, shape ``(n, 3)``.
-        triangles: Vertex indices, shape ``(m, 3)``.
-    """
-    corners = points[triangles].astype(np.float64)
-    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -11,7 +11,7 @@ import numpy as np
 from pxr import Sdf, Usd, UsdGeom, Vt
 
 from ..cage import Cage
-from ..geometry import lifted
+from ..geometry import as_points, lifted
 from .layers import (
     checked_name,
     checked_path,
@@ -24,7 +24,7 @@ from .layers import (
     vectors,
     write_arrays,
 )
-from .mesh_data import check_mesh, checked_points
+from .mesh_data import check_mesh
 from .outline import define_outline, outline_loops
 
 
@@ -57,7 +57,7 @@ def write_mesh(
         ValueError: The mesh is empty or invalid, or an argument is none of those named above.
     """
     path = checked_path(path)
-    points = checked_points("points", points)
+    points = as_points(points, "points", rows="n", widths=(3,))
     prim_path = f"/World/{checked_name(name)}"
     counts, indices = flat_faces(faces)
     check_mesh(f"mesh {name}", points, counts, indices)

@@ -14,8 +14,14 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..cage import simplex_distances
-from ..geometry import nearest_on_edges, nearest_on_triangles, winding_numbers
+from ..geometry import (
+    nearest_on_edges,
+    nearest_on_triangles,
+    simplex_distances,
+    triangle_normals,
+    units,
+    winding_numbers,
+)
 from .inequalities import Inequalities
 from .sampling import triangle_grid
 
@@ -48,9 +54,7 @@ class Shell:
     @property
     def normals(self) -> np.ndarray:
         """Unit normals of the triangles, shape (triangle_count, 3)."""
-        corners = self.corners
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        return _units(normals, np.linalg.norm(normals, axis=1))
+        return units(triangle_normals(self.corners))
 
     @property
     def volume(self) -> float:
@@ -90,7 +94,7 @@ def keep_around(rows: Inequalities, shell: Shell, points: np.ndarray, reach: flo
     face, distance, sign = face[near], distance[near], np.where(inside[near], -1.0, 1.0)
     weights = nearest_on_triangles(points[near], corners[face])
     away = points[near] - np.einsum("nk,nki->ni", weights, corners[face])
-    outward = np.where((distance > 0.0)[:, None], _units(sign[:, None] * away, distance), shell.normals[face])
+    outward = np.where((distance > 0.0)[:, None], units(sign[:, None] * away, distance), shell.normals[face])
     rows.require(shell.triangles[face], weights, outward, sign * distance, soft=True)
 
 
@@ -109,7 +113,7 @@ def keep_off(rows: Inequalities, shell: Shell, skin: cKDTree, margin: float, spa
     places = np.einsum("nk,nki->ni", weights, shell.corners[face])
     distance, nearest = skin.query(places, distance_upper_bound=margin + reach)
     near = np.flatnonzero(np.isfinite(distance))
-    away = _units(places[near] - skin.data[nearest[near]], distance[near])
+    away = units(places[near] - skin.data[nearest[near]], distance[near])
     outside = np.einsum("ni,ni->n", away, shell.normals[face[near]]) > _FACING
     near, away = near[outside], away[outside]
     rows.require(shell.triangles[face[near]], weights[near], away, margin - distance[near], soft=True)
@@ -127,7 +131,7 @@ def keep_apart(rows: Inequalities, shell: Shell, gap: float, reach: float) -> No
     for vertices, weights, away in (_vertex_gaps(shell), _edge_gaps(shell)):
         distance = np.linalg.norm(away, axis=1)
         near = distance < gap + 2.0 * reach
-        directions = _units(away[near], distance[near])
+        directions = units(away[near], distance[near])
         bounds = _allowed_loss(gap, distance[near])
         rows.require(vertices[near], weights[near], directions, bounds, soft=False)
 
@@ -148,7 +152,7 @@ def keep_shape(rows: Inequalities, shell: Shell, height: float) -> None:
         upright = top - start - along[:, None] * edge
         present = np.linalg.norm(upright, axis=1)
         weights = np.stack([np.ones_like(along), along - 1.0, -along], axis=1)
-        rows.require(vertices, weights, _units(upright, present), _allowed_loss(height, present), soft=False)
+        rows.require(vertices, weights, units(upright, present), _allowed_loss(height, present), soft=False)
 
 
 def _vertex_gaps(shell: Shell) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -175,8 +179,3 @@ def _edge_gaps(shell: Shell) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def _allowed_loss(least: float, present: np.ndarray) -> np.ndarray:
     """Least change of a length in one step: no loss below the least one, and of the rest only a share."""
     return _LOSS * np.minimum(least - present, 0.0)
-
-
-def _units(vectors: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """Vectors over their lengths, zero where they have none."""
-    return vectors / np.where(length > 0.0, length, 1.0)[:, None]

@@ -10,12 +10,11 @@ with less detail, is tried.
 
 from __future__ import annotations
 
-from operator import index
-
 import numpy as np
 from scipy.spatial import cKDTree
 
 from ..cage import Cage, check_inside, mesh_clearance
+from ..geometry import as_index, as_number
 from ..surface import Surface
 from .broaden import broaden
 from .meshlab import alpha_wrap, decimate, import_meshlab
@@ -39,7 +38,7 @@ def wrap_cage(points: np.ndarray, triangles: np.ndarray, face_count: int = 60, *
     """Make a coarse cage that holds a mesh.
 
     The mesh may be open, in pieces, inside out or crossing itself; holes smaller than a few offsets are closed. Pieces
-    that lie apart may get a component of the cage each. Needs the extra: ``pip install 'newton_cagecut[wrap]'``.
+    that lie apart may get a piece of the cage each. Needs the extra: ``pip install 'newton_cagecut[wrap]'``.
 
     Args:
         points: Points of the mesh, shape (point_count, 3) [m].
@@ -148,15 +147,7 @@ def checked_face_count(face_count: int) -> int:
         TypeError: It is not an integer.
         ValueError: It is out of its range.
     """
-    try:
-        face_count = index(face_count)
-    except TypeError:
-        raise TypeError(f"face_count must be an integer, got {face_count!r}") from None
-    if not _FACE_COUNTS[0] <= face_count <= _FACE_COUNTS[1]:
-        raise ValueError(
-            f"the number of faces must lie between {_FACE_COUNTS[0]} and {_FACE_COUNTS[1]}, got {face_count}"
-        )
-    return face_count
+    return as_index(face_count, "the number of faces", limits=_FACE_COUNTS)
 
 
 def checked_offset(offset: float) -> float:
@@ -166,10 +157,4 @@ def checked_offset(offset: float) -> float:
         TypeError: It is not a number.
         ValueError: It is out of its range.
     """
-    try:
-        offset = float(offset)
-    except (TypeError, ValueError):
-        raise TypeError(f"offset must be a number, got {offset!r}") from None
-    if not _OFFSETS[0] <= offset <= _OFFSETS[1]:
-        raise ValueError(f"the offset must lie between {_OFFSETS[0]} and {_OFFSETS[1]} of the diagonal, got {offset}")
-    return offset
+    return as_number(offset, "the offset, a share of the diagonal,", limits=_OFFSETS)

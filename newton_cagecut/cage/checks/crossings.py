@@ -8,11 +8,9 @@ culprits named.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
-from ...geometry import PolygonMesh
+from ...geometry import PolygonMesh, edge_pierces, near_pairs, segments_meet
 
 _CHUNK = 1 << 20
 
@@ -38,7 +36,7 @@ def check_simple_faces(mesh: PolygonMesh, corner: np.ndarray, tolerance: float) 
         step = max(1, _CHUNK // len(i))
         for begin in range(0, len(faces), step):
             block = slice(begin, begin + step)
-            meet = _segments_meet(start[block, i], end[block, i], start[block, j], end[block, j], tolerance)
+            meet = segments_meet(start[block, i], end[block, i], start[block, j], end[block, j], tolerance)
             bad, pair = np.nonzero(meet)
             if len(bad):
                 face = faces[begin + bad[0]]
@@ -47,19 +45,6 @@ def check_simple_faces(mesh: PolygonMesh, corner: np.ndarray, tolerance: float) 
                 raise ValueError(
                     f"face {face} of the cage intersects itself: its edges {one} and {two} meet; split the face"
                 )
-
-
-def _segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray, tolerance: float) -> np.ndarray:
-    """Whether closed segments a-b and c-d come within the tolerance by crossing, shape (...,)."""
-
-    def side(p, q, r):
-        u, v = q - p, r - p
-        value = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
-        return np.where(np.abs(value) <= tolerance * np.hypot(u[..., 0], u[..., 1]), 0.0, np.sign(value))
-
-    crossing = (side(a, b, c) * side(a, b, d) <= 0) & (side(c, d, a) * side(c, d, b) <= 0)
-    overlap = (np.minimum(a, b) <= np.maximum(c, d) + tolerance) & (np.minimum(c, d) <= np.maximum(a, b) + tolerance)
-    return crossing & overlap.all(axis=-1)
 
 
 def check_face_pairs(mesh: PolygonMesh, triangles: np.ndarray, triangle_face: np.ndarray, tolerance: float) -> None:
@@ -87,76 +72,6 @@ def check_face_pairs(mesh: PolygonMesh, triangles: np.ndarray, triangle_face: np
                 f"faces {mesh.face[h]} and {triangle_face[column[hit]]} of the cage intersect: edge ({a}, {b}) of the "
                 "first passes through the second; move the vertices apart"
             )
-
-
-def near_pairs(one: np.ndarray, other: np.ndarray, tolerance: float) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Pairs of which the bounding boxes come within a tolerance of each other.
-
-    Args:
-        one: Corners of the first things, shape (one_count, corner_count, dimension) [m].
-        other: Corners of the second things, shape (other_count, corner_count, dimension) [m].
-        tolerance: Gap between boxes up to which they count as meeting [m].
-
-    Yields:
-        Indices of the first and of the second thing of each pair, block by block of the first, shapes (pair_count,).
-    """
-    one_low, one_high = one.min(axis=1) - tolerance, one.max(axis=1) + tolerance
-    low, high = other.min(axis=1), other.max(axis=1)
-    step = max(1, _CHUNK // max(1, len(other)))
-    for begin in range(0, len(one), step):
-        block = slice(begin, begin + step)
-        near = np.ones((len(one[block]), len(other)), dtype=bool)
-        for axis in range(one.shape[2]):
-            near &= one_low[block, axis, None] <= high[:, axis]
-            near &= one_high[block, axis, None] >= low[:, axis]
-        row, column = np.nonzero(near)
-        yield begin + row, column
-
-
-def edge_pierces(p: np.ndarray, q: np.ndarray, corners: np.ndarray, tolerance: float) -> np.ndarray:
-    """Whether segments p-q pass from one side of their triangles to the other within them, shape (pair_count,).
-
-    Args:
-        p: Starts of the segments, shape (pair_count, 3) [m].
-        q: Ends of the segments, shape (pair_count, 3) [m].
-        corners: Triangles, shape (pair_count, 3, 3) [m].
-        tolerance: Length below which two things coincide [m].
-    """
-    normal = _unit_normals(corners)
-    from_p, from_q = (np.einsum("ij,ij->i", x - corners[:, 0], normal) for x in (p, q))
-    opposite = (np.minimum(from_p, from_q) < -tolerance) & (np.maximum(from_p, from_q) > tolerance)
-    difference = np.where(opposite, from_p - from_q, 1.0)
-    return opposite & _lies_over(p + (from_p / difference)[:, None] * (q - p), corners, normal, tolerance)
-
-
-def point_touches(points: np.ndarray, corners: np.ndarray, tolerance: float) -> np.ndarray:
-    """Whether points lie within a tolerance above or below their triangles, shape (pair_count,).
-
-    Args:
-        points: Points, shape (pair_count, 3) [m].
-        corners: Triangles, shape (pair_count, 3, 3) [m].
-        tolerance: Length below which two things coincide [m].
-    """
-    normal = _unit_normals(corners)
-    height = np.einsum("ij,ij->i", points - corners[:, 0], normal)
-    return (np.abs(height) <= tolerance) & _lies_over(points, corners, normal, tolerance)
-
-
-def _unit_normals(corners: np.ndarray) -> np.ndarray:
-    """Unit normals of triangles, zero where there is no area, shape (triangle_count, 3)."""
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.linalg.norm(normal, axis=1)
-    return normal / np.where(area > 0.0, area, 1.0)[:, None]
-
-
-def _lies_over(points: np.ndarray, corners: np.ndarray, normal: np.ndarray, tolerance: float) -> np.ndarray:
-    """Whether points lie over their triangles, looking along the normals, shape (pair_count,)."""
-    inside = normal.any(axis=1)
-    for k in range(3):
-        u, along = corners[:, k], corners[:, (k + 1) % 3] - corners[:, k]
-        height = np.einsum("ij,ij->i", np.cross(normal, along), points - u)
-        inside &= height >= -tolerance * np.linalg.norm(along, axis=1)
-    return inside
 
 
 def check_nesting(vertices: np.ndarray, component: np.ndarray, volumes: np.ndarray, winding) -> None:

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...geometry import PolygonMesh, edge_distances
-from .crossings import near_pairs
+from ...geometry import PolygonMesh, edge_distances, near_pairs
 
 
 def check_closed(mesh: PolygonMesh) -> None:

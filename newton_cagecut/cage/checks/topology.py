@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...geometry import PolygonMesh
-from . import crossings as intersection
-from . import segment_checks
+from . import crossings, segment_checks
 
 if TYPE_CHECKING:
     from ..cage import Cage
@@ -92,9 +91,9 @@ def check_crossings(cage: Cage) -> None:
         ValueError: If they do, or are not.
     """
     if cage.dimension == 3:
-        intersection.check_simple_faces(cage.mesh, cage.corner_coordinates, cage.length_tolerance)
-        intersection.check_face_pairs(cage.mesh, cage.triangles, cage.triangle_face, cage.length_tolerance)
-    intersection.check_nesting(cage.vertices, cage.vertex_component, cage.component_volumes, cage.winding_numbers)
+        crossings.check_simple_faces(cage.mesh, cage.corner_coordinates, cage.length_tolerance)
+        crossings.check_face_pairs(cage.mesh, cage.triangles, cage.triangle_face, cage.length_tolerance)
+    crossings.check_nesting(cage.vertices, cage.vertex_component, cage.component_volumes, cage.winding_numbers)
 
 
 def check_topology(mesh: PolygonMesh) -> None:

@@ -8,14 +8,12 @@ face sweeps, the prism between its old and its new place, becomes part of the bo
 
 from __future__ import annotations
 
-import operator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...geometry import PolygonMesh, winding_numbers
-from ..arguments import as_number
+from ...geometry import PolygonMesh, as_index, as_number, units, winding_numbers
 from ..wall import face_walls
 from .edit import CageEdit, swept_faces
 from .face_contact import find_contact
@@ -101,10 +99,7 @@ def move_face(cage: Cage, face: int, distance: float) -> CageEdit:
 
 def _checked(cage: Cage, face: int, distance: float) -> tuple[int, float]:
     """The arguments, if the face can leave its place and the distance is one."""
-    try:
-        face = operator.index(face)
-    except TypeError:
-        raise TypeError(f"the face must be an integer, got {face!r}") from None
+    face = as_index(face, "the face")
     if not 0 <= face < cage.face_count:
         raise ValueError(f"the cage has faces 0 to {cage.face_count - 1}, there is no face {face}")
     distance = as_number(distance, "the distance that a face moves")
@@ -157,8 +152,7 @@ def _extruded(cage: Cage, face: int, distance: float) -> Cage:
     side_count, size = sides.shape
     grown = mesh.extended(mesh.vertices[loop] + offset, np.full(side_count, size), sides.ravel())
     grown.face_vertex[mesh.face_start[face] : mesh.face_start[face + 1]] = top
-    area = grown.face_area_vector[mesh.face_count :]
-    normals = area / np.linalg.norm(area, axis=1, keepdims=True)
+    normals = units(grown.face_area_vector[mesh.face_count :])
     side_walls = face_walls(grown.vertices, size * np.arange(side_count + 1), sides.ravel(), normals)
     walls = (*cage.walls, replace(old_wall, origin=old_wall.origin + offset), *side_walls)
     face_wall = np.append(cage.face_wall, len(cage.walls) + 1 + np.arange(side_count))

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...geometry import PolygonMesh, edge_distances
-from ..checks.crossings import edge_pierces, near_pairs, point_touches
+from ...geometry import PolygonMesh, edge_distances, edge_pierces, near_pairs, point_touches
 
 if TYPE_CHECKING:
     from ..cage import Cage

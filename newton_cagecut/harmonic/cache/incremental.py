@@ -5,60 +5,95 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import warp as wp
 
+from ..journal import Journal
 from ..launch import launch, launch_blocks
 from ..stats import UpdateStats
 from ..walks.marking import ON_FACE, RESUME, REWALK, gather, make_mark_kernel, meet_first_spheres, unmark_walks
-from .domain import DomainChange
-from .walk_cache import Walker
+from ..walks.work import Work
+from .domain_state import DomainState
+from .walk_cache import WalkCache
 
 
-def run_concerned(walker: Walker, change: DomainChange, stats: UpdateStats) -> None:
-    """Bring walks and weights up to date with an edit that the domain has taken over.
+@dataclass(frozen=True, eq=False)
+class ConcernedWalks:
+    """Walks that an edit concerns.
 
     Args:
-        walker: Points, whose walks are kept.
-        change: What the edit means for walks.
+        rewalk: Walks to walk again.
+        on_face: Walks to evaluate again on their faces.
+        resume: Walks that go on from their landings.
+        touched: Points to resolve whatever comes of their walks, shape (point_count,).
+    """
+
+    rewalk: Work
+    on_face: Work
+    resume: Work
+    touched: wp.array
+
+
+def find_concerned(cache: WalkCache, after: DomainState, stats: UpdateStats) -> ConcernedWalks:
+    """Sort walks by what an edit means for them; nothing is changed yet.
+
+    Args:
+        cache: Points, whose walks are kept.
+        after: The state after the edit.
         stats: Where counts and times are added.
     """
-    touched = wp.zeros(walker.point_count, dtype=wp.uint8, device=walker.domain.device)
-    removed = walker.removed_points
-    rewalk, on_face, resume = _sorted_walks(walker, change, removed, touched, stats)
-    walker.walk(rewalk, stats, touched=touched)
-    walker.land(rewalk, stats, part="rewalk")
-    if resume.size:
-        walker.walk(resume, stats, touched=touched, resumed=True)
-        walker.land(resume, stats, part="resume")
-    walker.land(on_face, stats, part="on_face", touched=touched)
-    concerned = touched.numpy() != 0
-    if walker.options.correction != "none":
-        # An affine correction is spread over all vertices of a piece.
-        concerned |= walker.degrees.numpy()[: walker.point_count] == 0
-    concerned[removed] = False
-    walker.resolve(np.flatnonzero(concerned), stats)
-
-
-def _sorted_walks(
-    walker: Walker, change: DomainChange, removed: np.ndarray, touched: wp.array, stats: UpdateStats
-) -> tuple[wp.array, wp.array, wp.array]:
-    """Walks to walk again, to evaluate again on their faces, and to resume."""
-    device, kind, walks = walker.domain.device, walker.bounds_kind, walker.options.walks
-    walk_count = walker.point_count * walks
+    change, records, device = after.change, cache.records, after.device
+    walks, points, point_count = cache.options.walks, cache.points, cache.point_count
+    walk_count, removed = point_count * walks, cache.removed_points
+    touched = wp.zeros(point_count, dtype=wp.uint8, device=device)
     with stats.time("check", device):
-        pieces = kind.bound_pieces(change.polygons, change.directions, device)
+        pieces = records.kind.bound_pieces(change.polygons, change.directions, device)
         marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
         changes = wp.array(change.key_changes, dtype=wp.uint8, device=device)
-        met = wp.zeros(walker.point_count, dtype=wp.uint8, device=device)
-        inputs = [walker.domain.walls.data, change.first_new, walker.points, met]
-        launch(meet_first_spheres, walker.point_count, inputs, device=device)
-        inputs = [walks, walker.bounds, pieces, walker.points, walker.landings.key, changes, met, marks, touched]
-        launch_blocks(make_mark_kernel(kind), walk_count, inputs, device=device)
+        met = wp.zeros(point_count, dtype=wp.uint8, device=device)
+        inputs = [after.walls.data, change.first_new, points, met]
+        launch(meet_first_spheres, point_count, inputs, device=device)
+        inputs = [walks, records.bounds, pieces, points, records.landings.key, changes, met, marks, touched]
+        launch_blocks(make_mark_kernel(records.kind), walk_count, inputs, device=device)
         if len(removed):
-            work = walker.walks_of(removed)
-            launch(unmark_walks, work.size, [work, marks], device=device)
-        rewalk, on_face, resume = (gather(marks, int(mark)) for mark in (REWALK, ON_FACE, RESUME))
+            work = cache.work_of(removed)
+            launch(unmark_walks, work.count, [work.listed, marks], device=device)
+        rewalk, on_face, resume = (cache.work(gather(marks, int(mark))) for mark in (REWALK, ON_FACE, RESUME))
     stats.checked = stats.walk_count
-    stats.rewalked, stats.on_face, stats.resumed = rewalk.size, on_face.size, resume.size
-    return rewalk, on_face, resume
+    stats.rewalked, stats.on_face, stats.resumed = rewalk.count, on_face.count, resume.count
+    return ConcernedWalks(rewalk, on_face, resume, touched)
+
+
+def run_concerned(
+    cache: WalkCache, after: DomainState, concerned: ConcernedWalks, stats: UpdateStats, journal: Journal
+) -> None:
+    """Bring walks and weights up to date.
+
+    Args:
+        cache: Points, whose walks are kept.
+        after: The state after the edit.
+        concerned: The walks that the edit concerns.
+        stats: Where counts and times are added.
+        journal: Where all that is overwritten is kept before.
+    """
+    stages, touched = cache.stages(after, stats), concerned.touched
+    cache.keep_points(journal)
+    cache.keep_walks(concerned.rewalk, journal)
+    cache.keep_walks(concerned.resume, journal)
+    cache.keep_walks(concerned.on_face, journal, walked=False)
+    stages.walk(concerned.rewalk, touched=touched)
+    stages.land(concerned.rewalk)
+    if concerned.resume.count:
+        stages.walk(concerned.resume, touched=touched, resumed=True)
+        stages.land(concerned.resume, part="resume")
+    stages.land(concerned.on_face, part="on_face", touched=touched)
+    again = touched.numpy() != 0
+    if cache.options.correction != "none":
+        # An affine correction is spread over all vertices of a piece.
+        again |= cache.weights.degrees.numpy()[: cache.point_count] == 0
+    again[cache.removed_points] = False
+    indices = np.flatnonzero(again)
+    cache.keep_weights(indices, journal)
+    stages.resolve(indices)

@@ -15,64 +15,70 @@ import numpy as np
 import warp as wp
 
 from ...cage import Cage
-from ..walks.landing import LANDING_DTYPES
-from .domain import Domain, DomainState
-from .walk_cache import Walker
-
-_POINT_ARRAYS = ("position", "key", "piece", "gradient_row", "first_radius")
+from ..journal import Journal
+from ..resolve.point_weights import PointWeights
+from ..walks.query_points import point_arrays
+from ..walks.records import WalkRecords
+from .domain import Domain
+from .domain_state import DomainState
+from .walk_cache import WalkCache
 
 
 @dataclass(frozen=True, eq=False)
 class CoordinatesSnapshot:
     """All that edits change in a set of coordinates; made by ``HarmonicCoordinates.snapshot``."""
 
-    owner: Walker
-    domain: DomainState
-    arrays: dict[str, wp.array]
+    owner: WalkCache
+    state: DomainState
+    present: DomainState
+    records: WalkRecords
+    points: dict[str, wp.array]
+    weights: PointWeights
     rest: np.ndarray
-    point_count: int
 
     @property
     def cage(self) -> Cage:
         """The cage at the time."""
-        return self.domain.cage
+        return self.state.cage
 
     @property
     def byte_count(self) -> int:
         """Bytes of the copies on the device."""
-        return sum(array.size * wp.types.type_size_in_bytes(array.dtype) for array in self.arrays.values())
+        arrays = [*self.records.landing_arrays.values(), self.records.bounds]
+        arrays += [*self.points.values(), *self.weights.arrays.values()]
+        return sum(array.size * wp.types.type_size_in_bytes(array.dtype) for array in arrays)
 
     @classmethod
-    def of(cls, walker: Walker, domain: Domain) -> CoordinatesSnapshot:
+    def of(cls, cache: WalkCache, state: DomainState, domain: Domain) -> CoordinatesSnapshot:
         """Copy what edits change.
 
         Args:
-            walker: Points, walks and weights.
-            domain: Walls, grid and faces.
+            cache: Points, walks and weights.
+            state: The state that they are for.
+            domain: The domain, which may have gone on to another state.
         """
-        arrays = {name: wp.clone(array) for name, array in edited_arrays(walker).items()}
-        return cls(walker, domain.state(), arrays, walker._rest.copy(), walker.point_count)
+        points = {name: wp.clone(array) for name, array in point_arrays(cache.points).items()}
+        copies = cache.records.copied(), points, cache.weights.copied()
+        return cls(cache, state, domain.now, *copies, cache.rest)
 
-    def restore(self) -> None:
-        """Bring everything back; arrays that did not grow since stay where they are."""
-        walker = self.owner
-        walker.domain.restore(self.domain)
-        for name, array in edited_arrays(walker).items():
-            kept = self.arrays[name]
-            if array.shape == kept.shape:
-                wp.copy(array, kept)
-            else:
-                array.zero_()
-                rows = array.numpy()
-                rows[:, : kept.shape[1]] = kept.numpy()
-                array.assign(rows)
-        walker._rest[:] = self.rest
-        walker.point_count = self.point_count
+    def restore(self, domain: Domain, journal: Journal) -> None:
+        """Bring everything back; arrays of weights that did not grow since stay where they are.
 
-
-def edited_arrays(walker: Walker) -> dict[str, wp.array]:
-    """The arrays that edits write to, by name."""
-    arrays = {f"landing {name}": getattr(walker.landings, name) for name in LANDING_DTYPES[walker.domain.dimension]}
-    arrays |= {f"point {name}": getattr(walker.points, name) for name in _POINT_ARRAYS}
-    arrays |= {"bounds": walker.bounds, "weights": walker.weights, "gradients": walker.gradients}
-    return arrays | {"degrees": walker.degrees, "lowest": walker.lowest}
+        Args:
+            domain: The domain.
+            journal: Where all that is overwritten is kept before.
+        """
+        cache, records = self.owner, self.records.copied()
+        grown = cache.weights.vertex_capacity != self.weights.vertex_capacity
+        weights = self.weights.copied() if grown else cache.weights
+        cache.keep_points(journal)
+        journal.keep_attributes(cache, "records", "weights")
+        journal.keep_attributes(domain, "now")
+        if not grown:
+            journal.keep(*weights.arrays.values())
+        domain.now, cache.records, cache.weights, cache.rest = self.present, records, weights, self.rest
+        for name, array in point_arrays(cache.points).items():
+            wp.copy(array, self.points[name])
+        if not grown:
+            for name, array in weights.arrays.items():
+                wp.copy(array, self.weights.arrays[name])

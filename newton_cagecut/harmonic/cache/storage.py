@@ -12,23 +12,21 @@ update may only keep walks that would repeat themselves (paper, section 4.2).
 from __future__ import annotations
 
 import os
-from dataclasses import asdict, replace
-from importlib import metadata
+from dataclasses import asdict
 
 import numpy as np
 import warp as wp
 
+from ..._version import __version__
 from ...cage import Cage
 from ..options import WalkOptions
-from ..point_checks import checked_points
 from ..stats import UpdateStats
 from ..walks.query_points import INSIDE, REMOVED
 from ..walls.frame import UnitFrame
-from ..walls.wall_triangles import Walls
+from ..walls.walls import Walls
 from .container import read_container, write_container
 from .domain import Domain
-from .snapshot import edited_arrays
-from .walk_cache import Walker
+from .walk_cache import WalkCache
 
 FORMAT = 1
 """Number of the present layout of the file."""
@@ -37,38 +35,37 @@ _REPEATED_WALKS = 1 << 14
 _REPEATED_POINTS = 8
 
 
-def save_walker(walker: Walker, path: str | os.PathLike) -> None:
+def save_cache(cache: WalkCache, domain: Domain, path: str | os.PathLike) -> None:
     """Write points, their walks and weights, and the walls, to a file.
 
     Args:
-        walker: What to save; its walks are kept.
+        cache: What to save; its walks are kept.
+        domain: Walls and faces that its weights are for.
         path: Where to write it.
 
     Raises:
         OSError: The file cannot be written; one that was there is as it was.
     """
-    domain = walker.domain
-    options = replace(walker.options, quads=domain.quads, distance=domain.distance)
     header = {
         "format": FORMAT,
-        "library": _library_version(),
+        "library": __version__,
         "made_on": _device_text(domain.device),
-        "options": asdict(options),
-        "point_capacity": walker.point_capacity,
-        "vertex_capacity": walker.fixed_vertex_capacity,
+        "options": asdict(cache.options) | {"quads": domain.quads, "distance": domain.distance},
+        "point_capacity": cache.point_capacity,
+        "vertex_capacity": cache.vertex_capacity,
     }
     arrays = {"frame": np.append(domain.frame.center, domain.frame.half_side)}
     arrays |= {f"wall {name}": rows for name, rows in domain.walls.rows.items()}
     arrays |= {f"cage {name}": rows for name, rows in _cage_arrays(domain.cage).items()}
-    arrays |= {"rest": walker.rest, "gradient_mask": walker.points.gradient_row.numpy() >= 0}
-    arrays |= {name: array.numpy()[_used(name, walker)] for name, array in edited_arrays(walker).items()}
+    arrays |= {"rest": cache.rest, "gradient_mask": cache.points.gradient_row.numpy() >= 0}
+    arrays |= _used_rows(cache, domain.cage)
     write_container(path, header, arrays)
 
 
-def load_walker(
+def load_cache(
     path: str | os.PathLike, cage: Cage, points: np.ndarray, *, device: wp.context.Device, options: dict[str, object]
-) -> Walker:
-    """Read what ``save_walker`` wrote.
+) -> tuple[WalkCache, Domain]:
+    """Read what ``save_cache`` wrote.
 
     Args:
         path: Where the file is.
@@ -89,44 +86,48 @@ def load_walker(
     for name in options:
         if name not in kept:
             raise TypeError(f"load: there is no option {name!r}; there are {', '.join(kept)}")
-    points = checked_points(points, cage.dimension)
     _refuse(path, _cage_difference(arrays, cage))
     _refuse(path, _point_difference(arrays["rest"], points, arrays["point key"] == REMOVED))
     for name, value in options.items():
         if kept[name] != value:
             _refuse(path, f"its {name} is {kept[name]!r}, not {value!r}")
-    walker = _filled_walker(header, arrays, cage, points, device)
-    _check_repetition(path, header, arrays, walker)
-    return walker
+    cache, domain = _filled_cache(header, arrays, cage, points, device)
+    _check_repetition(path, header, arrays, cache, domain)
+    return cache, domain
 
 
-def _filled_walker(
+def _filled_cache(
     header: dict, arrays: dict[str, np.ndarray], cage: Cage, points: np.ndarray, device: wp.context.Device
-) -> Walker:
-    options = WalkOptions(**header["options"])
+) -> tuple[WalkCache, Domain]:
+    options = dict(header["options"])
     frame = UnitFrame(arrays["frame"][:-1], float(arrays["frame"][-1]))
-    walls = Walls.of_rows(frame, _part(arrays, "wall"), device=device)
-    walker = Walker(
-        Domain(cage, quads=options.quads, distance=options.distance, device=device, walls=walls),
-        options,
+    walls = Walls(frame, _part(arrays, "wall"), device=device)
+    domain = Domain(cage, quads=options.pop("quads"), distance=options.pop("distance"), device=device, walls=walls)
+    cache = WalkCache(
+        domain.now,
+        WalkOptions(**options),
         point_capacity=header["point_capacity"],
         vertex_capacity=header["vertex_capacity"],
         gradient_mask=arrays["gradient_mask"],
         cuttable=True,
     )
-    walker.point_count = len(points)
-    walker.rest[:] = points
-    for name, array in edited_arrays(walker).items():
+    cache.rest = points
+    for name, array in cache.arrays.items():
         rows = array.numpy()
-        rows[_used(name, walker)] = arrays[name]
+        rows[_used(name, cache, cage)] = arrays[name]
         array.assign(rows)
-    return walker
+    return cache, domain
 
 
-def _used(name: str, walker: Walker) -> tuple[slice, ...]:
+def _used_rows(cache: WalkCache, cage: Cage) -> dict[str, np.ndarray]:
+    """The arrays without what is reserved, by name."""
+    return {name: array.numpy()[_used(name, cache, cage)] for name, array in cache.arrays.items()}
+
+
+def _used(name: str, cache: WalkCache, cage: Cage) -> tuple[slice, ...]:
     """The part of an array that is in use; the rest is reserved."""
-    points, vertices = slice(walker.point_count), slice(walker.domain.cage.vertex_count)
-    walks = slice(walker.point_count * walker.options.walks)
+    points, vertices = slice(cache.point_count), slice(cage.vertex_count)
+    walks = slice(cache.point_count * cache.options.walks)
     if name.startswith("landing "):
         return (walks,)
     shapes = {"bounds": (slice(None), walks), "weights": (points, vertices), "gradients": (slice(None), vertices)}
@@ -158,9 +159,9 @@ def _refuse(path: str | os.PathLike, difference: str | None) -> None:
 def _version_difference(header: dict) -> str | None:
     if header["format"] != FORMAT:
         return f"its format is number {header['format']}, this library's is {FORMAT}; make the coordinates again"
-    if header["library"] != _library_version():
+    if header["library"] != __version__:
         return (
-            f"newton_cagecut {header['library']} has written it, this is {_library_version()}, whose walks may be other"
+            f"newton_cagecut {header['library']} has written it, this is {__version__}, whose walks may be other"
             " ones; make the coordinates again"
         )
     return None
@@ -202,29 +203,24 @@ def _point_difference(kept: np.ndarray, given: np.ndarray, removed: np.ndarray) 
     return None
 
 
-def _check_repetition(path: str | os.PathLike, header: dict, arrays: dict[str, np.ndarray], walker: Walker) -> None:
+def _check_repetition(
+    path: str | os.PathLike, header: dict, arrays: dict[str, np.ndarray], cache: WalkCache, domain: Domain
+) -> None:
     """Run some points again, and refuse a file whose bits do not come back."""
     keys = arrays["point key"]
     points = np.flatnonzero(keys == INSIDE)
     if not len(points):
         points = np.flatnonzero(keys != REMOVED)
-    count = max(1, min(_REPEATED_POINTS, _REPEATED_WALKS // walker.options.walks))
+    count = max(1, min(_REPEATED_POINTS, _REPEATED_WALKS // cache.options.walks))
     points = np.unique(points[np.linspace(0, len(points) - 1, count).astype(int)]) if len(points) else points
-    walker.run_points(points, UpdateStats(len(points) * walker.options.walks))
-    for name, array in edited_arrays(walker).items():
-        if not np.array_equal(array.numpy()[_used(name, walker)], arrays[name]):
+    cache.stages(domain.now, UpdateStats(len(points) * cache.options.walks)).run_points(points)
+    for name, rows in _used_rows(cache, domain.cage).items():
+        if not np.array_equal(rows, arrays[name]):
             _refuse(
                 path,
                 f"its walks do not repeat themselves bit for bit ({name}); it was made on {header['made_on']}, this is "
-                f"{_device_text(walker.domain.device)}; make the coordinates again here",
+                f"{_device_text(domain.device)}; make the coordinates again here",
             )
-
-
-def _library_version() -> str:
-    try:
-        return metadata.version("newton_cagecut")
-    except metadata.PackageNotFoundError:
-        return "of an unknown version"
 
 
 def _device_text(device: wp.context.Device) -> str:

@@ -7,8 +7,12 @@ from functools import cache
 
 import warp as wp
 
+from ..launch import launch
+from ..options import WalkOptions
 from ..walks.landing import KEY_MASK, NOWHERE, landing_type, point_functions
 from ..walks.query_points import QueryPoints
+from ..walks.records import WalkRecords
+from ..walks.work import Work, WorkList, number_of, place_of, point_of
 from .boundary_value import BoundaryValue, make_landing_value
 from .face_tables import QUAD, TRIANGLE, FaceTables, face_of_landing, plane_point
 from .face_walk import walk_on_face
@@ -60,10 +64,7 @@ def make_land_kernel(*, dimension: int, nested: bool, compare: bool) -> wp.Kerne
     @wp.kernel(enable_backward=False, module="unique")
     def land(
         offset: int,
-        work: wp.array[wp.int32],
-        walks: int,
-        first_walk: int,
-        seed: wp.uint32,
+        work: WorkList,
         points: QueryPoints,
         before: FaceTables,
         tables: FaceTables,
@@ -72,11 +73,8 @@ def make_land_kernel(*, dimension: int, nested: bool, compare: bool) -> wp.Kerne
         max_steps: int,
         touched: wp.array[wp.uint8],
     ):
-        slot = offset + wp.tid()
-        walk = slot
-        if work.shape[0] > 0:
-            walk = work[slot]
-        point = (first_walk + walk) // walks
+        walk = place_of(work, offset + wp.tid())
+        point = point_of(work, walk)
         old = BoundaryValue()
         if wp.static(compare):
             # A walk that has landed elsewhere since has touched its point already, whatever stands here then.
@@ -90,8 +88,8 @@ def make_land_kernel(*, dimension: int, nested: bool, compare: bool) -> wp.Kerne
             param = float(0.0)
             if wp.static(nested):
                 if tables.kind[face] != TRIANGLE and tables.kind[face] != QUAD:
-                    number = wp.uint32((first_walk + walk) % walks)
-                    hit = walk_on_face(tables, face, local, seed, wp.uint32(point), number, epsilon, max_steps)
+                    number = number_of(work, walk)
+                    hit = walk_on_face(tables, face, local, work.seed, wp.uint32(point), number, epsilon, max_steps)
                     edge = hit.row
                     param = hit.param
             landings.edge[walk] = edge
@@ -101,3 +99,32 @@ def make_land_kernel(*, dimension: int, nested: bool, compare: bool) -> wp.Kerne
                 touched[point] = wp.uint8(1)
 
     return land
+
+
+def land_walks(
+    work: Work,
+    records: WalkRecords,
+    points: QueryPoints,
+    faces: FaceTables,
+    options: WalkOptions,
+    *,
+    before: FaceTables,
+    touched: wp.array | None = None,
+) -> None:
+    """Evaluate landings on the faces as they are.
+
+    Args:
+        work: The walks that have landed.
+        records: Their landings, and where the evaluation is written.
+        points: Where they started.
+        faces: The faces.
+        options: Options of the walks.
+        before: The faces on which the landings were evaluated before, if they were.
+        touched: Where to mark points of which a boundary value is another one than on the faces before, shape
+            (point_count,).
+    """
+    kernel = make_land_kernel(dimension=records.dimension, nested=faces.nested_count > 0, compare=touched is not None)
+    if touched is None:
+        touched = wp.empty(0, dtype=wp.uint8, device=records.device)
+    inputs = [work.list, points, before, faces, records.landings, options.epsilon, options.max_steps, touched]
+    launch(kernel, work.count, inputs, device=records.device)

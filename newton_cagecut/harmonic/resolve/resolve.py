@@ -15,14 +15,19 @@ The sums run over the walks in their order, so the result does not depend on whi
 
 from functools import cache
 
+import numpy as np
 import warp as wp
 
 from ..faces.boundary_value import make_landing_value
 from ..faces.face_tables import FaceTables
+from ..launch import launch
+from ..options import WalkOptions
 from ..walks.landing import landing_type, point_functions
 from ..walks.query_points import QueryPoints
 from ..walks.random import make_direction
+from ..walks.records import WalkRecords
 from .affine import make_affine_correction
+from .point_weights import PointWeights
 from .polynomials import make_polynomials
 from .regression import FAR_COUNT, make_regression
 
@@ -32,6 +37,8 @@ _SHORTEST_RADIUS = wp.constant(4.0)
 """Least first radius that the gradient's estimator divides by, times the number of walks, in the unit frame."""
 _ZERO = wp.constant(wp.float64(0.0))
 _ONE = wp.constant(wp.float64(1.0))
+
+_BATCH_BYTES = 1 << 26
 
 
 @cache
@@ -169,3 +176,43 @@ def make_resolve_kernel(*, dimension: int, correction: str, gradients: bool) -> 
         lowest[point] = least
 
     return resolve
+
+
+def resolve_points(
+    indices: np.ndarray,
+    weights: PointWeights,
+    records: WalkRecords,
+    points: QueryPoints,
+    faces: FaceTables,
+    options: WalkOptions,
+    *,
+    half_side: float,
+    first_point: int = 0,
+) -> None:
+    """Reduce the landings of points to weights and gradients, in batches.
+
+    Args:
+        indices: The points, shape (n,).
+        weights: Where their rows are written.
+        records: Landings of their walks, evaluated on the faces.
+        points: Where the walks started.
+        faces: The faces.
+        options: Options of the walks and of the resolve.
+        half_side: Half of the longest side of the box around the cage before any cut [m].
+        first_point: The point whose walks are the first of the records.
+    """
+    device, dimension, vertex_count = records.device, records.dimension, faces.rest.size
+    polynomials = make_polynomials(dimension)
+    kernel = make_resolve_kernel(
+        dimension=dimension, correction=options.correction, gradients=weights.gradients.shape[0] > 0
+    )
+    batch = max(1, min(len(indices), _BATCH_BYTES // (8 * (polynomials.count + 3) * vertex_count)))
+    moments = make_regression(dimension).Moments()
+    moments.value = wp.empty((batch, vertex_count), dtype=polynomials.Features, device=device)
+    moments.slope = wp.empty((batch, vertex_count), dtype=wp.vec3d, device=device)
+    rows = wp.array(indices.astype(np.int32), dtype=wp.int32, device=device)
+    for first in range(0, len(indices), batch):
+        inputs = [first, rows, moments, options.walks, first_point, wp.uint32(options.seed), options.degree]
+        inputs += [half_side, vertex_count, points, faces, records.landings]
+        inputs += [weights.weights, weights.gradients, weights.degrees, weights.lowest]
+        launch(kernel, min(batch, len(indices) - first), inputs, device=device, smallest_chunk=16)

@@ -45,6 +45,35 @@ def empty_points(capacity: int, gradient_mask: np.ndarray, device: wp.context.De
     return points
 
 
+def point_arrays(points: QueryPoints) -> dict[str, wp.array]:
+    """The arrays of points, by name."""
+    return {name: getattr(points, name) for name in ("position", "key", "piece", "gradient_row", "first_radius")}
+
+
 def byte_count(points: QueryPoints) -> int:
     """Bytes on the device."""
     return 28 * points.key.size
+
+
+def place_points(
+    points: QueryPoints, indices: np.ndarray, positions: np.ndarray, keys: np.ndarray, pieces: np.ndarray
+) -> None:
+    """Write points to their places.
+
+    Args:
+        points: Where to write them.
+        indices: Their numbers, shape (n,).
+        positions: Their positions in the unit frame, shape (n, 3).
+        keys: Their keys, shape (n,).
+        pieces: Their pieces, shape (n,).
+    """
+    for array, values in ((points.position, positions), (points.key, keys), (points.piece, pieces)):
+        write_rows(array, indices, values)
+
+
+def write_rows(array: wp.array, indices: np.ndarray, values: np.ndarray) -> None:
+    """Write rows of a device array in place."""
+    if len(indices):
+        rows = array.numpy()
+        rows[indices] = values
+        array.assign(rows)

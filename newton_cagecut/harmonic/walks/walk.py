@@ -11,17 +11,23 @@ Where an edit has made a gate of a wall, a walk that comes within epsilon of it 
 counters of its own. So it can be resumed from that landing alone (paper, section 8), and is the same walk.
 """
 
+from collections.abc import Callable
 from functools import cache
 
 import warp as wp
 
+from ..launch import launch
+from ..options import WalkOptions
 from ..walls.cells import GridCells
+from ..walls.grid import CandidateGrid
 from ..walls.nearest_wall import ALL_GATES, make_nearest, nearest_at, nothing_yet
 from ..walls.wall_triangles import WallTriangles, closest_point_on_triangle
 from .bounds.kind import BoundsKind
 from .landing import CAPPED, PASSED, landing_type, point_functions
 from .query_points import QueryPoints
 from .random import GATE_STREAM, make_direction
+from .records import WalkRecords
+from .work import Work, WorkList, number_of, place_of, point_of
 
 wp.set_module_options({"enable_backward": False})
 
@@ -80,10 +86,7 @@ def make_walk_kernel(
     @wp.kernel(enable_backward=False, module="unique")
     def walk_on_spheres(
         offset: int,
-        work: wp.array[wp.int32],
-        walks: int,
-        first_walk: int,
-        seed: wp.uint32,
+        work: WorkList,
         points: QueryPoints,
         triangles: WallTriangles,
         cells: GridCells,
@@ -94,12 +97,10 @@ def make_walk_kernel(
         bounds: wp.array2d[bounds_kind.level_type],
         touched: wp.array[wp.uint8],
     ):
-        slot = offset + wp.tid()
-        walk = slot
-        if work.shape[0] > 0:
-            walk = work[slot]
-        point = (first_walk + walk) // walks
-        number = wp.uint32((first_walk + walk) % walks)
+        walk = place_of(work, offset + wp.tid())
+        point = point_of(work, walk)
+        number = number_of(work, walk)
+        seed = work.seed
         x = points.position[point]
         stream = seed
         passed = wp.uint32(0)
@@ -185,3 +186,44 @@ def make_walk_kernel(
             bounds_kind.store(bounds, walk, whole)
 
     return walk_on_spheres
+
+
+def run_walks(
+    work: Work,
+    records: WalkRecords,
+    points: QueryPoints,
+    grid: CandidateGrid,
+    options: WalkOptions,
+    *,
+    distance: str,
+    touched: wp.array | None = None,
+    resumed: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> None:
+    """Walk, and record where the walks landed and their bounds.
+
+    Args:
+        work: The walks.
+        records: Where they are recorded.
+        points: Where they start.
+        grid: The walls, indexed.
+        options: Options of the walks.
+        distance: "grid" or "all": how the nearest wall is found.
+        touched: Where to mark points of which a walk has landed elsewhere than before, shape (point_count,).
+        resumed: Whether to go on from the gates on which the walks have landed.
+        progress: Called with the finished fraction, between 0 and 1.
+    """
+    walls, device = grid.walls, records.device
+    kernel = make_walk_kernel(
+        dimension=records.dimension,
+        distance=distance,
+        bounded=records.bounded,
+        bounds_kind=records.kind,
+        gated=walls.gate_count > 0,
+        resumed=resumed,
+    )
+    if touched is None:
+        touched = wp.empty(points.key.size if records.bounded else 0, dtype=wp.uint8, device=device)
+    inputs = [work.list, points, walls.data, grid.cells, walls.gate_of_wall, options.epsilon, options.max_steps]
+    inputs += [records.landings, records.bounds, touched]
+    launch(kernel, work.count, inputs, device=device, progress=progress)

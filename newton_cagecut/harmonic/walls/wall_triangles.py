@@ -1,30 +1,16 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Walls: the triangles, in 2D segments, that stop walks, append-only.
-
-The cage's faces are walls from the start; every swept piece of a cut is appended (design: "walls are append-only,
-faces change"). A triangle knows its wall; a wall is a plane with one side (a face of the cage) or two (a cut).
-
-A wall that an extending edit has removed stays on as a gate (paper, section 8: "extending operations (e.g., extrusions)
-can simply resume walks"): it limits a walk's spheres until the walk has come to it, and that walk ignores it from then
-on. So a walk stays a function of the walls and the seed.
+"""The triangles of walls on a device, and the point of one that is closest to another point.
 
 In 2D everything lies in the plane z = 0, and a segment is a triangle of which two corners are the same.
 """
 
 from __future__ import annotations
 
-import numpy as np
 import warp as wp
 
-from ...geometry import lifted
-from .frame import UnitFrame
-
 wp.set_module_options({"enable_backward": False})
-
-MOST_GATES = 31
-"""Gates that one set of walls may have: a walk keeps a bit for each."""
 
 
 @wp.struct
@@ -118,135 +104,3 @@ def closest_point(triangles: WallTriangles, t: int, x: wp.vec3, off: float, inwa
 def closest_point_on_triangle(triangles: WallTriangles, t: int, x: wp.vec3) -> wp.vec3:
     """Closest point of a triangle."""
     return closest_point(triangles, t, x, plane_distance(triangles, t, x), inward_distances(triangles, t, x))
-
-
-class Walls:
-    """The walls of one cage and of its cuts, on a device.
-
-    Args:
-        frame: The unit frame of the cage.
-        device: Where the triangles live.
-    """
-
-    def __init__(self, frame: UnitFrame, *, device: wp.context.Device) -> None:
-        self.frame = frame
-        self.device = device
-        self.triangle_count = 0
-        self._rows: dict[str, np.ndarray] = {}
-        self.data = WallTriangles()
-
-    @classmethod
-    def of_rows(cls, frame: UnitFrame, rows: dict[str, np.ndarray], *, device: wp.context.Device) -> Walls:
-        """Walls that were there before, by their ``rows``."""
-        walls = cls(frame, device=device)
-        walls._rows, walls.triangle_count = rows, len(rows["wall"])
-        walls._upload()
-        return walls
-
-    @property
-    def rows(self) -> dict[str, np.ndarray]:
-        """The triangles on the host: an array for each field of ``WallTriangle``."""
-        return self._rows
-
-    def append(self, corners: np.ndarray, walls: np.ndarray, normals: np.ndarray, two_sided: np.ndarray) -> range:
-        """Append triangles and return their indices.
-
-        Args:
-            corners: Rest positions [m], shape (t, dimension, dimension).
-            walls: Wall of each triangle, shape (t,).
-            normals: The wall's unit normal for each triangle, shape (t, dimension).
-            two_sided: Whether walks land on both sides, shape (t,).
-        """
-        first = self.triangle_count
-        rows = _wall_rows(self.frame.to_unit(corners), normals)
-        rows["wall"] = walls.astype(np.int32)
-        rows["two_sided"] = two_sided.astype(np.int32)
-        rows["gate"] = np.full(len(corners), -1, dtype=np.int32)
-        self._rows = {
-            name: np.concatenate([self._rows[name], row]) if self._rows else row for name, row in rows.items()
-        }
-        self.triangle_count = first + len(corners)
-        self._upload()
-        return range(first, self.triangle_count)
-
-    @property
-    def gate_count(self) -> int:
-        """Number of gates."""
-        return int(self._rows["gate"].max()) + 1
-
-    def retire(self, walls: np.ndarray) -> None:
-        """Make gates of walls that bound the cage no longer.
-
-        Args:
-            walls: Their numbers, shape (wall_count,).
-        """
-        gate = self._rows["gate"].copy()
-        for number, wall in enumerate(walls.tolist(), start=self.gate_count):
-            gate[self._rows["wall"] == wall] = number
-        self._rows = {**self._rows, "gate": gate}
-        self._upload()
-
-    def gate_of_wall(self) -> wp.array:
-        """Number of the gate that each wall has become, -1 for none, shape (wall_count,)."""
-        gates = np.full(int(self._rows["wall"].max()) + 1, -1, dtype=np.int32)
-        gates[self._rows["wall"]] = self._rows["gate"]
-        return wp.array(gates, dtype=wp.int32, device=self.device)
-
-    def box(self, first: int = 0) -> tuple[np.ndarray, np.ndarray]:
-        """Least and greatest coordinates of the triangles from the first on in the unit frame, shape (3,) each."""
-        corners = np.concatenate([self._rows[f"corner_{k}"][first:] for k in range(3)])
-        return corners.min(axis=0), corners.max(axis=0)
-
-    def state(self) -> tuple:
-        """The walls as they are; appending replaces what this refers to, and never writes to it."""
-        return self.triangle_count, self._rows, self.data
-
-    def restore(self, state: tuple) -> None:
-        """Forget the walls that were appended since a state."""
-        self.triangle_count, self._rows, self.data = state
-
-    def _upload(self) -> None:
-        data = WallTriangles()
-        rows = np.zeros(self.triangle_count, dtype=WallTriangle.numpy_dtype())
-        for name, values in self._rows.items():
-            rows[name] = values
-        data.rows = wp.array(rows, dtype=WallTriangle, device=self.device)
-        data.count = self.triangle_count
-        self.data = data
-
-    @property
-    def byte_count(self) -> int:
-        """Bytes on the device."""
-        return sum(rows.nbytes for rows in self._rows.values())
-
-
-def _wall_rows(corners: np.ndarray, normals: np.ndarray) -> dict[str, np.ndarray]:
-    """Corners, edge normals and normals in float32, from unit-frame corners in float64."""
-    if corners.shape[1] == 2:
-        inward = _segment_ends(corners)
-        corners = lifted(corners[:, [0, 1, 0]])
-    else:
-        corners = _wound(corners, normals)
-        inward = [_unit(np.cross(normals, corners[:, (k + 1) % 3] - corners[:, k])) for k in range(3)]
-    rows = {"normal": lifted(normals).astype(np.float32)}
-    for k in range(3):
-        rows[f"corner_{k}"] = corners[:, k].astype(np.float32)
-        rows[f"inward_{k}"] = inward[k].astype(np.float32)
-    return rows
-
-
-def _segment_ends(corners: np.ndarray) -> list[np.ndarray]:
-    """Directions into segments from their ends, which bound them as edges bound a triangle."""
-    along = lifted(_unit(corners[:, 1] - corners[:, 0]))
-    return [np.zeros_like(along), -along, along]
-
-
-def _wound(corners: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """Triangles of which the winding agrees with the wall's normal, so that edge normals point inward."""
-    area = np.einsum("ij,ij->i", np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), normals)
-    return np.where((area < 0.0)[:, None, None], corners[:, ::-1], corners)
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return vectors / np.where(length > 0.0, length, 1.0)

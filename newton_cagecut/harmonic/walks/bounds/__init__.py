@@ -16,12 +16,12 @@ from functools import cache
 import numpy as np
 import warp as wp
 
+from ...options import BOUNDS, require_choice
 from .dop import make_dop
 from .kind import BoundsKind
 from .sphere import make_sphere
 
-BOUNDS = ("dop18", "dop26", "aabb", "sphere")
-"""The kinds that there are."""
+__all__ = ["BOUNDS", "BoundsKind", "make_bounds"]
 
 _SIDES = np.eye(3)
 _DIAGONALS = np.array([[1, 1, 0], [1, -1, 0], [1, 0, 1], [1, 0, -1], [0, 1, 1], [0, 1, -1]], dtype=np.float64)
@@ -38,8 +38,7 @@ def make_bounds(kind: str, dimension: int) -> BoundsKind:
     Raises:
         ValueError: There is no such kind.
     """
-    if kind not in BOUNDS:
-        raise ValueError(f"bounds must be one of {', '.join(BOUNDS)}, not {kind!r}")
+    require_choice("bounds", kind, BOUNDS)
     return _make("dop18" if dimension == 2 and kind == "dop26" else kind, dimension)
 
 

@@ -1,0 +1,145 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The three stages of a walk's life, on whatever arrays they are to fill: walk, land, resolve."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import warp as wp
+
+from ..faces.land import land_walks
+from ..options import WalkOptions
+from ..resolve.point_weights import PointWeights
+from ..resolve.resolve import resolve_points
+from ..stats import UpdateStats
+from ..walks.bounds import make_bounds
+from ..walks.landing import CAPPED
+from ..walks.marking import count_capped
+from ..walks.query_points import QueryPoints
+from ..walks.records import WalkRecords
+from ..walks.walk import run_walks
+from ..walks.work import Work
+from .domain_state import DomainState
+
+_BATCH_WALKS = 1 << 22
+
+
+@dataclass(eq=False)
+class Stages:
+    """What the stages read and write.
+
+    Args:
+        state: Walls and faces.
+        options: Options of the walks and of the resolve.
+        points: Where the walks start.
+        point_count: Points that there are.
+        weights: Where points are resolved to.
+        records: What is kept of all walks; None where nothing is.
+        stats: Where counts and times are added.
+    """
+
+    state: DomainState
+    options: WalkOptions
+    points: QueryPoints
+    point_count: int
+    weights: PointWeights
+    records: WalkRecords | None
+    stats: UpdateStats
+
+    def run_all(self, *, progress: Callable[[float], None] | None = None) -> None:
+        """Walk, land and resolve every point: all together where walks are kept, else in batches.
+
+        Args:
+            progress: Called with the finished fraction, between 0 and 1.
+        """
+        walks, count = self.options.walks, self.point_count
+        batch = count
+        if self.records is None:
+            batch = min(count, max(1, _BATCH_WALKS // walks))
+            self.records = unkept_records(self.state, self.options, batch * walks)
+        for first in range(0, count, max(batch, 1)):
+            size = min(batch, count - first)
+
+            def report(fraction: float, first: int = first, size: int = size) -> None:
+                progress((first + fraction * size) / count)
+
+            work = Work.of_range(first, size, walks, self.options.seed, self.state.device)
+            self.walk(work, progress=progress and report)
+            self.land(work)
+            self.resolve(np.arange(first, first + size), first_point=first)
+
+    def run_points(self, indices: np.ndarray) -> None:
+        """Walk, land and resolve some points, whose walks are kept."""
+        work = Work.of_points(indices, self.options.walks, self.options.seed, self.state.device)
+        self.walk(work)
+        self.land(work)
+        self.resolve(indices)
+
+    def walk(
+        self,
+        work: Work,
+        *,
+        touched: wp.array | None = None,
+        resumed: bool = False,
+        progress: Callable[[float], None] | None = None,
+    ) -> None:
+        """Walk; see ``run_walks``."""
+        with self.stats.time("resume" if resumed else "rewalk", self.state.device):
+            run_walks(
+                work,
+                self.records,
+                self.points,
+                self.state.grid,
+                self.options,
+                distance=self.state.distance,
+                touched=touched,
+                resumed=resumed,
+                progress=progress,
+            )
+
+    def land(self, work: Work, *, part: str = "rewalk", touched: wp.array | None = None) -> None:
+        """Evaluate landings on the faces, and mark points of which a value is no longer that before the edit."""
+        change = self.state.change
+        before = self.state.faces if change is None else change.faces_before
+        with self.stats.time(part, self.state.device):
+            land_walks(work, self.records, self.points, self.state.faces, self.options, before=before, touched=touched)
+
+    def resolve(self, indices: np.ndarray, *, first_point: int = 0) -> None:
+        """Reduce the landings of points to weights; ``first_point`` is the one whose walks are the first records."""
+        if not len(indices):
+            return
+        stats, walks = self.stats, self.options.walks
+        with stats.time("resolve", self.state.device):
+            resolve_points(
+                indices,
+                self.weights,
+                self.records,
+                self.points,
+                self.state.faces,
+                self.options,
+                half_side=self.state.frame.half_side,
+                first_point=first_point,
+            )
+            stats.resolved_points += len(indices)
+            stats.lowest_weight = float(self.weights.lowest.numpy()[: self.point_count].min())
+            keys = self.records.landings.key
+            if self.records.bounded:
+                stats.capped = count_capped(keys[: self.point_count * walks], int(CAPPED))
+            else:
+                stats.capped += count_capped(keys[: len(indices) * walks], int(CAPPED))
+
+
+def unkept_records(state: DomainState, options: WalkOptions, count: int) -> WalkRecords:
+    """Room for walks that are forgotten once they are resolved."""
+    kind = make_bounds(options.bounds, state.cage.dimension)
+    return WalkRecords(state.cage.dimension, count, kind, bounded=False, device=state.device)
+
+
+def kept_records(state: DomainState, options: WalkOptions, count: int) -> WalkRecords:
+    """Room for walks that are kept until edits concern them."""
+    kind = make_bounds(options.bounds, state.cage.dimension)
+    return WalkRecords(state.cage.dimension, count, kind, bounded=True, device=state.device)
