@@ -14,18 +14,19 @@ from .density_fit import ChargePanels, DensityFit, DipolePanels
 from .face_dipoles import projected
 from .face_values import FaceValues, face_values
 from .panels import FacePanels, FacePlanes, face_panels
+from .plane_fit import PlaneFit
 
-_TOLERANCE = 1e-2
+_TOLERANCE = 3e-2
 """Error of boundary functions that are not linear, at which their panels are divided no more."""
 
 
 class BoundaryFit:
-    """Harmonic coordinates of a cage in space.
+    """Harmonic coordinates of a cage.
 
     Args:
         cage: The cage.
         quads: "mean_value" or "harmonic": how convex quads interpolate.
-        panel_size: Greatest length of panels, relative to half of the longest side of the cage's bounding box.
+        panel_size: Greatest length of panels in space, relative to half of the longest side of the cage's bounding box.
         device: Where to compute.
         known: Boundary functions of faces, by their corners; those that were missing are added.
     """
@@ -43,11 +44,20 @@ class BoundaryFit:
         self.frame = UnitFrame.of(cage.vertices)
         self._known = {} if known is None else known
         self._quads, self._device = quads, device
+        self._columns = [np.flatnonzero(cage.vertex_piece == piece) for piece in range(cage.piece_count)]
+        if cage.dimension == 2:
+            self._fits = [self._plane_fit_of(piece) for piece in range(cage.piece_count)]
+            return
         planes = FacePlanes(cage, self.frame)
         panels = face_panels(cage, self.frame, planes, panel_size)
-        self._columns = [np.flatnonzero(cage.vertex_piece == piece) for piece in range(cage.piece_count)]
         values = [self._values_of(planes.polygon(face)) for face in range(cage.face_count)]
         self._fits = [self._fit_of(piece, planes, panels, values) for piece in range(cage.piece_count)]
+
+    def _plane_fit_of(self, piece: int) -> PlaneFit:
+        segments = np.array(self.cage.faces)[self.cage.face_piece == piece]
+        local = np.searchsorted(self._columns[piece], segments)
+        edges = self.frame.to_unit(self.cage.vertices)[segments]
+        return PlaneFit(edges, local, len(self._columns[piece]), self._device)
 
     def _values_of(self, polygon: np.ndarray) -> FaceValues:
         key = self._quads.encode() + polygon.tobytes()
@@ -56,8 +66,6 @@ class BoundaryFit:
         return self._known[key]
 
     def _fit_of(self, piece: int, planes: FacePlanes, panels: FacePanels, values: list[FaceValues]) -> DensityFit:
-        local = np.full(self.cage.vertex_count, -1)
-        local[self._columns[piece]] = np.arange(len(self._columns[piece]))
         own = self.cage.face_piece[panels.face] == piece
         used = np.flatnonzero(own & panels.charged)
         _, nodes = np.unique(panels.nodes[used], return_inverse=True)
@@ -66,7 +74,7 @@ class BoundaryFit:
         known = np.zeros((*points.shape[:2], len(self._columns[piece])))
         parts = []
         for face in np.flatnonzero(self.cage.face_piece == piece).tolist():
-            loop = local[list(self.cage.faces[face])]
+            loop = np.searchsorted(self._columns[piece], self.cage.faces[face])
             at = np.flatnonzero(panels.face[used] == face)
             if len(at):
                 place = planes.to_plane(face, points[at]).reshape(-1, 2)
@@ -95,7 +103,7 @@ class BoundaryFit:
         """Weights of points inside.
 
         Args:
-            points: Rest positions [m], shape (point_count, 3).
+            points: Rest positions [m], shape (point_count, dimension).
             piece: Piece of the cage that each lies in, shape (point_count,).
 
         Returns:
@@ -108,14 +116,14 @@ class BoundaryFit:
         return out
 
     def gradients(self, points: np.ndarray, piece: np.ndarray) -> np.ndarray:
-        """Gradients of the weights [1/m], shape (point_count, cage.vertex_count, 3); see ``values``."""
-        out = np.zeros((len(points), self.cage.vertex_count, 3))
+        """Gradients of the weights [1/m], shape (point_count, cage.vertex_count, dimension); see ``values``."""
+        out = np.zeros((len(points), self.cage.vertex_count, self.cage.dimension))
         unit = self.frame.to_unit(points)
         for own, fit, columns in self._by_piece(piece):
             out[np.ix_(own, columns)] = fit.gradients(unit[own]) / self.frame.half_side
         return out
 
-    def _by_piece(self, piece: np.ndarray) -> list[tuple[np.ndarray, DensityFit, np.ndarray]]:
+    def _by_piece(self, piece: np.ndarray) -> list[tuple[np.ndarray, DensityFit | PlaneFit, np.ndarray]]:
         """Points, fit and columns of each piece that has points."""
         groups = [np.flatnonzero(piece == number) for number in range(len(self._fits))]
         return [(own, fit, columns) for own, fit, columns in zip(groups, self._fits, self._columns) if len(own)]

@@ -18,9 +18,9 @@ from ...cage import Cage
 from ..walls.frame import UnitFrame
 
 _LEAST_ANGLE = 1.02 * np.pi
-_SHRINK = 0.24
+_SHRINK = 0.35
 """Panels at an edge of three quarters of a turn, relative to others; the exponent grows with the angle."""
-_GROWTH = 1.5
+_GROWTH = 1.75
 """Panels a distance away from a crease, relative to the distance."""
 
 

@@ -14,7 +14,7 @@ from collections.abc import Callable
 import numpy as np
 import warp as wp
 
-from .plane_fit import PlaneFit, polygon_edges
+from .plane_fit import PlaneFit, nearest_edges, polygon_edges
 
 FaceValues = Callable[[np.ndarray], np.ndarray]
 """Points of a face's plane, shape (n, 2) -> what each corner counts there, shape (n, corner_count)."""
@@ -78,7 +78,13 @@ def _mean_values(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
     arm = corners - points[:, None]
     length = np.sqrt((arm**2).sum(axis=2))
     after = np.roll(arm, -1, axis=1)
-    cosine = length * np.roll(length, -1, axis=1) + (arm * after).sum(axis=2)
-    half = _cross(arm, after) / cosine  # tangent of half the angle
-    weight = (np.roll(half, 1, axis=1) + half) / length
-    return weight / weight.sum(axis=1, keepdims=True)
+    on_edge, edge, share = nearest_edges(polygon_edges(corners)[0], points)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cosine = length * np.roll(length, -1, axis=1) + (arm * after).sum(axis=2)
+        half = _cross(arm, after) / cosine  # tangent of half the angle
+        weight = (np.roll(half, 1, axis=1) + half) / length
+        weight /= weight.sum(axis=1, keepdims=True)
+    weight[on_edge] = 0.0
+    rows, edge, share = np.flatnonzero(on_edge), edge[on_edge], share[on_edge]
+    weight[rows, edge], weight[rows, (edge + 1) % len(corners)] = 1.0 - share, share
+    return weight

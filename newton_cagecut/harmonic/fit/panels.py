@@ -41,6 +41,18 @@ class FacePlanes:
         offset = points - self.origin[face]
         return np.stack([(offset * axis).sum(axis=-1) for axis in self.axes[face]], axis=-1)
 
+    def flattened(self, faces: np.ndarray, corners: np.ndarray) -> np.ndarray:
+        """Corners of panels moved into the planes of their faces: those of a cage are planar within a tolerance only.
+
+        Args:
+            faces: Face of each panel, shape (panel_count,).
+            corners: Corners of the panels, shape (panel_count, corner_count, 3).
+        """
+        first, second = self.axes[faces, 0][:, None], self.axes[faces, 1][:, None]
+        offset = corners - self.origin[faces][:, None]
+        x, y = (offset * first).sum(axis=2, keepdims=True), (offset * second).sum(axis=2, keepdims=True)
+        return self.origin[faces][:, None] + x * first + y * second
+
     def to_space(self, face: int, points: np.ndarray) -> np.ndarray:
         """Points of a face's plane in space, shape (..., 3)."""
         return self.origin[face] + points[..., :1] * self.axes[face, 0] + points[..., 1:] * self.axes[face, 1]
@@ -86,7 +98,8 @@ def face_panels(cage: Cage, frame: UnitFrame, planes: FacePlanes, most: float) -
         vertices[corner % cage.vertex_count], number.reshape(-1, 3), lambda center: creases.wanted(center, most)
     )
     face = cage.triangle_face[plain][source]
-    parts = [(points[nodes], nodes, face, ~np.isin(face, list(uncovered)), np.ones(len(face), dtype=bool))]
+    corners = planes.flattened(face, points[nodes])
+    parts = [(corners, nodes, face, ~np.isin(face, list(uncovered)), np.ones(len(face), dtype=bool))]
     for f in fronted:
         fronts = creases.fronts[creases.fronts[:, 0] == f, 1]
         ends = np.stack([planes.corners[fronts], planes.corners[cage.mesh.next[fronts]]], axis=1)

@@ -34,6 +34,7 @@ class PlaneFit:
         low, high = edges.min(axis=(0, 1)), edges.max(axis=(0, 1))
         self._center, self._scale = (low + high) / 2.0, 2.0 * _EXTENT / (high - low).max()
         edges = (edges - self._center) * self._scale
+        self._edges, self._columns = edges, columns
         part, first, last = _uncovered(edges)
         share = _graded_shares(*_gradings(edges, columns)[:, part], panels)
         share = first[:, None] + (last - first)[:, None] * share
@@ -58,8 +59,18 @@ class PlaneFit:
         self._fit = DensityFit(charges, dipoles, values, device)
 
     def values(self, points: np.ndarray) -> np.ndarray:
-        """Coordinates of points inside, shape (point_count, column_count)."""
-        return self._fit.values((points - self._center) * self._scale)
+        """Coordinates of points inside or on an edge, shape (point_count, column_count).
+
+        On a slit a point counts for the edge that comes first.
+        """
+        points = (points - self._center) * self._scale
+        values = self._fit.values(points)
+        on_edge, edge, share = nearest_edges(self._edges, points)
+        rows, edge, share = np.flatnonzero(on_edge), edge[on_edge], share[on_edge]
+        values[rows] = 0.0
+        values[rows, self._columns[edge, 0]] = 1.0 - share
+        values[rows, self._columns[edge, 1]] = share
+        return values
 
     def gradients(self, points: np.ndarray) -> np.ndarray:
         """Their gradients, shape (point_count, column_count, 2)."""
@@ -74,6 +85,22 @@ def polygon_edges(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """
     after = np.roll(np.arange(len(corners)), -1)
     return np.stack([corners, corners[after]], axis=1), np.stack([np.arange(len(corners)), after], axis=1)
+
+
+def nearest_edges(edges: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Which points lie on edges, but for rounding, the nearest edge of each, and the share of it where that is.
+
+    Args:
+        edges: Ends of edges, shape (edge_count, 2, 2).
+        points: Points, shape (point_count, 2).
+    """
+    along = edges[:, 1] - edges[:, 0]
+    offset = points[:, None] - edges[:, 0]
+    share = np.clip((offset * along).sum(axis=2) / (along**2).sum(axis=1), 0.0, 1.0)
+    squared = ((offset - share[:, :, None] * along) ** 2).sum(axis=2)
+    edge = squared.argmin(axis=1)
+    rows = np.arange(len(points))
+    return squared[rows, edge] < (_SAME * np.ptp(edges, axis=(0, 1)).max()) ** 2, edge, share[rows, edge]
 
 
 def _uncovered(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
