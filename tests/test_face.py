@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The face of the package: its public names, its version and what stands around it."""
 
+import ast
 import importlib
 import inspect
 import re
@@ -47,6 +48,19 @@ def test_dir_lists_public_names_alone():
     assert dir(newton_cagecut) == sorted(newton_cagecut.__all__)
     with pytest.raises(AttributeError, match="has no attribute 'Knife'"):
         newton_cagecut.Knife  # noqa: B018
+
+
+def test_readme_uses_names_that_there_are():
+    """The listings of README.md parse, and every name of the library in them exists."""
+    listings = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    assert len(listings) >= 2
+    for listing in listings:
+        for node in ast.walk(ast.parse(listing)):
+            if isinstance(node, ast.Attribute) and ast.unparse(node.value) == "cagecut":
+                assert node.attr in NAMES
+            if isinstance(node, ast.ImportFrom) and node.module.startswith(PACKAGE):
+                module = importlib.import_module(node.module)
+                assert {alias.name for alias in node.names} <= set(module.__all__)
 
 
 def test_version():

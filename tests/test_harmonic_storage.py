@@ -171,7 +171,7 @@ def test_other_versions_are_refused(saved, tmp_path, monkeypatch):
     write_container(tmp_path / "later", {**header, "format": 99}, arrays)
     with pytest.raises(ValueError, match="format is number 99, this library's is 1"):
         HarmonicCoordinates.load(tmp_path / "later", half_cut_box(), POINTS[3])
-    monkeypatch.setattr("newton_cagecut.harmonic.cache.storage._library_version", lambda: "7.0")
+    monkeypatch.setattr("newton_cagecut.harmonic.cache.storage.__version__", "7.0")
     with pytest.raises(ValueError, match=r"newton_cagecut .* has written it, this is 7\.0"):
         HarmonicCoordinates.load(saved, half_cut_box(), POINTS[3])
 

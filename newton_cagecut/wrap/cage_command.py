@@ -101,7 +101,7 @@ def report(cage: Cage, surface: Surface) -> str:
         volume = "the mesh has none"
     else:
         volume = f"{cage.volume / abs(surface.volume):.2f} times the mesh's"
-    pieces = "" if cage.component_count == 1 else f", {cage.component_count} components"
+    pieces = "" if cage.piece_count == 1 else f", {cage.piece_count} pieces"
     return (
         f"{cage.face_count} faces, {cage.vertex_count} vertices{pieces}\n"
         f"  volume     {cage.volume:.4g} m^3, {volume}\n"

@@ -38,7 +38,7 @@ def wrap_cage(points: np.ndarray, triangles: np.ndarray, face_count: int = 60, *
     """Make a coarse cage that holds a mesh.
 
     The mesh may be open, in pieces, inside out or crossing itself; holes smaller than a few offsets are closed. Pieces
-    that lie apart may get a component of the cage each. Needs the extra: ``pip install 'newton_cagecut[wrap]'``.
+    that lie apart may get a piece of the cage each. Needs the extra: ``pip install 'newton_cagecut[wrap]'``.
 
     Args:
         points: Points of the mesh, shape (point_count, 3) [m].

@@ -122,10 +122,10 @@ class Cut:
         return self._strip.is_complete(self.front)
 
     def advance(self, to: float) -> CageEdit:
-        """Move the blade on.
+        """Move the blade on to a depth, wherever it is now; by a length it is moved with ``cut.depth + length``.
 
         Args:
-            to: Depth along the blade's direction, from where it first touches the cage [m].
+            to: Depth along the blade's direction, from where it first touches the cage [m]: absolute.
 
         Returns:
             The step from the cage as it was.

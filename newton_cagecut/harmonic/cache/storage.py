@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import os
 from dataclasses import asdict
-from importlib import metadata
 
 import numpy as np
 import warp as wp
 
+from ..._version import __version__
 from ...cage import Cage
 from ..options import WalkOptions
 from ..stats import UpdateStats
@@ -48,7 +48,7 @@ def save_cache(cache: WalkCache, domain: Domain, path: str | os.PathLike) -> Non
     """
     header = {
         "format": FORMAT,
-        "library": _library_version(),
+        "library": __version__,
         "made_on": _device_text(domain.device),
         "options": asdict(cache.options) | {"quads": domain.quads, "distance": domain.distance},
         "point_capacity": cache.point_capacity,
@@ -159,9 +159,9 @@ def _refuse(path: str | os.PathLike, difference: str | None) -> None:
 def _version_difference(header: dict) -> str | None:
     if header["format"] != FORMAT:
         return f"its format is number {header['format']}, this library's is {FORMAT}; make the coordinates again"
-    if header["library"] != _library_version():
+    if header["library"] != __version__:
         return (
-            f"newton_cagecut {header['library']} has written it, this is {_library_version()}, whose walks may be other"
+            f"newton_cagecut {header['library']} has written it, this is {__version__}, whose walks may be other"
             " ones; make the coordinates again"
         )
     return None
@@ -221,13 +221,6 @@ def _check_repetition(
                 f"its walks do not repeat themselves bit for bit ({name}); it was made on {header['made_on']}, this is "
                 f"{_device_text(domain.device)}; make the coordinates again here",
             )
-
-
-def _library_version() -> str:
-    try:
-        return metadata.version("newton_cagecut")
-    except metadata.PackageNotFoundError:
-        return "of an unknown version"
 
 
 def _device_text(device: wp.context.Device) -> str:
