@@ -17,11 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 from tqdm import tqdm
 
-from benchmarks.progressive import Table, add_scenes, parsed, parser_of, show
+from benchmarks.progressive import add_scenes, parsed, parser_of, show
 from benchmarks.scenes import SCENES, BenchmarkScene
 from newton_cagecut import Cage, Cut, HarmonicCoordinates
 from newton_cagecut.cage import boundary_distances
 from newton_cagecut.elastic import sample_quadrature
+from newton_cagecut.report.bench import spread
+from newton_cagecut.report.page.markdown import Table
 
 CORRECTIONS = ("none", "affine", "harmonic")
 GROUP_COUNT = 10
@@ -64,11 +66,6 @@ class Errors:
             *(str(len(self.group)), f"{100.0 * share:.1f}", *gains),
             " ".join(f"{gain:.1f}" for gain in tenths["harmonic"]),
         ]
-
-
-def spread(points: np.ndarray, count: int) -> np.ndarray:
-    """Return about ``count`` of the points, evenly over their order, or all where the count is 0."""
-    return points[:: max(1, len(points) // count)] if count else points
 
 
 def measure(
@@ -140,7 +137,7 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, str], Errors
         f"{', '.join(means)}."
     )
     rows = [[*key, *errors.cells()] for key, errors in found.items()]
-    show([Table(title, HEAD, rows)], options.markdown)
+    show([Table(title, HEAD, rows)], options)
     return found
 
 

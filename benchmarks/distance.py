@@ -13,21 +13,14 @@ import time
 
 import numpy as np
 
-from benchmarks.progressive import Table, parsed, parser_of, show
-from benchmarks.topology import armed_ball
-from newton_cagecut import Cage, HarmonicCoordinates
+from benchmarks.progressive import parsed, parser_of, show
+from newton_cagecut import HarmonicCoordinates
+from newton_cagecut.report.page.markdown import Table
+from newton_cagecut.report.scenes.armed_ball import armed_ball, inner_points
 
 FACE_COUNTS = (100, 200, 400, 800, 1600)
 POINT_COUNT = 200
 RUNS = 3
-
-
-def inner_points(cage: Cage, count: int) -> np.ndarray:
-    """Return uniform points inside a cage [m], shape ``(count, 3)``."""
-    rng = np.random.default_rng(1)
-    low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
-    points = rng.uniform(low, high, (40 * count, 3))
-    return points[cage.contains(points)][:count]
 
 
 def compare(face_count: int, walks: int) -> list[str]:
@@ -68,7 +61,7 @@ def main(arguments: list[str] | None = None) -> None:
     head = ("triangles", "grid us/walk", "all us/walk", "ratio", "first bake ms", "grid MB")
     compare(FACE_COUNTS[0], 4)  # compiles
     rows = [compare(face_count, options.walks) for face_count in FACE_COUNTS]
-    show([Table("Walks by grid and by all walls, the same bit for bit.", head, rows)], options.markdown)
+    show([Table("Walks by grid and by all walls, the same bit for bit.", head, rows)], options)
 
 
 if __name__ == "__main__":

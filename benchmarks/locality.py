@@ -21,9 +21,11 @@ import numpy as np
 from tqdm import tqdm
 
 from assets.starfish import ARM_ANGLES
-from benchmarks.progressive import Table, edits, parsed, parser_of, show, step_count
+from benchmarks.progressive import parsed, parser_of, show
 from benchmarks.scenes import DOWN, SCENES, across_octopus_arm
 from newton_cagecut import Blade, Cage, HarmonicCoordinates
+from newton_cagecut.report.page.markdown import Table
+from newton_cagecut.report.paper.cutting import edits, step_count
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -229,7 +231,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     shares = place_shares(options.walks, device=options.device)
     found = bounds_counts(options.walks, device=options.device)
     dimensions = dimension_counts(options.walks, device=options.device)
-    show([place_table(shares), bounds_table(found), dimension_table(dimensions)], options.markdown)
+    show([place_table(shares), bounds_table(found), dimension_table(dimensions)], options)
     if options.plot:
         plot(shares, found, options.plot)
 

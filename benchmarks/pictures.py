@@ -14,9 +14,10 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from benchmarks.progressive import add_scenes, edits
+from benchmarks.progressive import add_scenes
 from benchmarks.scenes import SCENES, BenchmarkScene
 from examples.picture import Camera, cage_edges, render_png, tube_mesh
+from newton_cagecut.report.paper.cutting import edits
 from newton_cagecut.usd import read_mesh
 
 _SKIN, _CAGE, _CUT = (0.55, 0.2, 0.06), (0.02, 0.02, 0.02), (0.05, 0.35, 0.6)

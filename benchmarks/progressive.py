@@ -1,86 +1,37 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""What the benchmarks share: cuts in small steps, and their command lines."""
+"""What the benchmarks share: their command lines, and tables that are printed, kept and compared."""
 
 from __future__ import annotations
 
 import argparse
-import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+import json
+from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 import warp as wp
 
+from benchmarks.comparison import compared, tables_of
 from benchmarks.scenes import SCENES
-from examples.table import markdown_lines, table_lines
-from newton_cagecut import Blade, Cage, CageEdit, Cut, HarmonicCoordinates
-
-STEP = 0.03  # of a cut's length, as in section 7 of the paper
+from newton_cagecut.report.page.markdown import Table, markdown_lines, table_lines
 
 
-def edits(cage: Cage, blades: Sequence[Blade], step: float = STEP) -> Iterator[CageEdit]:
-    """Cut a cage by one blade after the other, each through the whole cage.
-
-    Args:
-        cage: The cage before the cuts.
-        blades: The blades.
-        step: Advance of a blade from one edit to the next, as a share of its cut's length.
-    """
-    for blade in blades:
-        cut = Cut(cage, blade)
-        for k in range(1, step_count(step) + 1):
-            yield cut.advance(to=cut.length * min(k * step, 1.0))
-        cage = cut.cage
-
-
-def step_count(step: float = STEP) -> int:
-    """Return the number of steps of one cut."""
-    return math.ceil(1.0 / step - 1e-9)
-
-
-def compile_kernels(cage: Cage, blades: Sequence[Blade], points: np.ndarray, **options) -> None:
-    """Run all kernels of an update on a few points, so that none is compiled while the clock runs.
-
-    Args:
-        cage: The cage.
-        blades: Its cuts.
-        points: Points in it [m], shape ``(n, 3)``.
-        options: Of the coordinates.
-    """
-    coordinates = HarmonicCoordinates(cage, points[:: max(1, len(points) // 16)], 8, **options)
-    for edit in edits(cage, blades, 0.1):
-        coordinates.update(edit)
-    coordinates.recompute()
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table to print.
-
-    Attributes:
-        title: A line over it.
-        head: Names of the columns.
-        rows: The cells.
-    """
-
-    title: str
-    head: Sequence[str]
-    rows: Sequence[Sequence[str]]
-
-
-def show(tables: Sequence[Table], markdown: Path | None) -> None:
-    """Print tables, and write them to a file where one is wanted.
+def show(tables: Sequence[Table], options: argparse.Namespace) -> None:
+    """Print tables; write them as Markdown and as JSON, and compare them with earlier ones, where that is wanted.
 
     Args:
         tables: The tables.
-        markdown: The file; it is replaced.
+        options: The parsed command line.
     """
     print("\n\n".join("\n".join([table.title, "", *table_lines(table.head, table.rows)]) for table in tables))
-    if markdown:
+    if options.markdown:
         lines = [line for table in tables for line in (table.title, "", *markdown_lines(table.head, table.rows), "")]
-        markdown.write_text("\n".join(lines))
+        options.markdown.write_text("\n".join(lines))
+    earlier = json.loads(options.compare.read_text()) if options.compare else None
+    if options.json:
+        options.json.write_text(json.dumps(tables_of(tables), indent=1) + "\n")
+    if earlier is not None:
+        print("\n".join(["", f"compared with {options.compare}", *compared(earlier, tables_of(tables))]))
 
 
 def parser_of(description: str) -> argparse.ArgumentParser:
@@ -93,6 +44,8 @@ def parser_of(description: str) -> argparse.ArgumentParser:
     parser.add_argument("--walks", type=int, help="walks a point (default: 256 on a CPU, 2048 on CUDA)")
     parser.add_argument("--device", help="Warp device (default: Warp's)")
     parser.add_argument("--markdown", metavar="FILE", type=Path, help="write the tables to a file too")
+    parser.add_argument("--json", metavar="FILE", type=Path, help="write the figures to a file, for --compare")
+    parser.add_argument("--compare", metavar="FILE", type=Path, help="print what differs from such a file")
     return parser
 
 

@@ -17,8 +17,8 @@ import numpy as np
 
 from assets.dude import HAT_HEIGHT
 from assets.octopus import arm_curve
-from benchmarks.paper import TABLE_1, PaperRow
 from newton_cagecut import Blade, Cage
+from newton_cagecut.report.paper.published import TABLE_1, PaperRow
 from newton_cagecut.usd import read_cage, read_mesh
 
 ASSETS = Path(__file__).parent.parent / "assets"

@@ -9,13 +9,15 @@ the least time of five runs, which other work on the machine disturbs least.
 
 from __future__ import annotations
 
-import argparse
 import time
+from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial import ConvexHull
 
+from benchmarks.progressive import parser_of, show
 from newton_cagecut.cage import Cage, Cut
+from newton_cagecut.report.page.markdown import Table
+from newton_cagecut.report.scenes.armed_ball import armed_ball
 from newton_cagecut.section import Blade
 
 FACE_COUNTS = (100, 200, 407, 800, 1600, 3200)
@@ -23,25 +25,6 @@ STEPS = 40
 RUNS = 5
 LIMIT = 5.0  # of the step of a cage of about 400 faces [ms]
 BLADE = ([0.1, 0.2, 1.0], [1.0, 0.3, 0.1])  # edge and direction
-
-
-def armed_ball(face_count: int) -> Cage:
-    """A ball with eight arms of triangles, of the number of faces or one less.
-
-    Args:
-        face_count: Wanted number of faces.
-    """
-    count = face_count // 2 + 2
-    height = 1.0 - (2.0 * np.arange(count) + 1.0) / count
-    turn = np.pi * (1.0 + np.sqrt(5.0)) * np.arange(count)
-    level = np.sqrt(1.0 - height**2)
-    directions = np.stack([level * np.cos(turn), level * np.sin(turn), height], axis=1)
-    triangles = ConvexHull(directions).simplices
-    a, b, c = (directions[triangles[:, k]] for k in range(3))
-    inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0.0
-    triangles[inward] = triangles[inward, ::-1]
-    radius = 0.5 + 0.5 * np.cos(4.0 * np.arctan2(directions[:, 1], directions[:, 0])) ** 2 * level**2
-    return Cage(radius[:, None] * directions, triangles)
 
 
 def step_times(cage: Cage, steps: int = STEPS) -> tuple[np.ndarray, float]:
@@ -63,13 +46,16 @@ def step_times(cage: Cage, steps: int = STEPS) -> tuple[np.ndarray, float]:
     return np.array(seconds), begun
 
 
-def main() -> None:
-    """Print, and plot if asked to."""
-    parser = argparse.ArgumentParser(description="time of the topology step of a cut")
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print, and plot if asked to.
+
+    Args:
+        arguments: The command line; that of the program by default.
+    """
+    parser = parser_of(__doc__.split("\n")[0])
     parser.add_argument("--plot", metavar="FILE", help="write a plot of the growth")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     rows = []
-    print(f"{'faces':>6} {'crossed':>8} {'median ms':>10} {'worst ms':>9} {'begin ms':>9}")
     for face_count in FACE_COUNTS:
         cage = armed_ball(face_count)
         step_times(cage, 4)
@@ -77,10 +63,14 @@ def main() -> None:
         milliseconds = 1e3 * np.min([seconds for seconds, _ in times], axis=0)
         begun = 1e3 * min(seconds for _, seconds in times)
         crossed = Cut(cage, Blade(cage.vertices.mean(axis=0), *BLADE)).section.chord_count
-        rows.append((cage.face_count, crossed, np.median(milliseconds), milliseconds.max()))
-        print(f"{cage.face_count:>6} {crossed:>8} {rows[-1][2]:>10.2f} {rows[-1][3]:>9.2f} {begun:>9.2f}")
+        rows.append((cage.face_count, crossed, np.median(milliseconds), milliseconds.max(), begun))
+    cells = [[str(faces), str(crossed), *(f"{each:.2f}" for each in times)] for faces, crossed, *times in rows]
+    show(
+        [Table("Topology of a step of a cut.", ("faces", "crossed", "median ms", "worst ms", "begin ms"), cells)],
+        options,
+    )
     if options.plot:
-        _plot(np.array(rows), options.plot)
+        _plot(np.array(rows)[:, :4], options.plot)
 
 
 def _plot(rows: np.ndarray, path: str) -> None:

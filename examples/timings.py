@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from examples.cutting import PlannedCut
-from examples.table import table_lines
 from newton_cagecut import Cut, CutReport, HarmonicCoordinates, SolverCageCut
+from newton_cagecut.report.page.markdown import table_lines
 from newton_cagecut.solver import CageBody
 
 RECOMPUTE_EVERY = 8  # steps of the first cut

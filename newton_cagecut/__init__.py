@@ -4,8 +4,8 @@
 """Cages with harmonic coordinates that can be cut while they move, as a solver for Newton.
 
 The rooms, from the bottom up: ``geometry``, ``section``, ``cage``, ``harmonic``, ``surface``, ``elastic``, ``usd``,
-``wrap``, ``solver``. The names here are the public ones. The method is "Fast Cutting of Cage Based Deformation with
-Walk on Spheres"; bit-identical updates and harmonic control variates go past it.
+``wrap``, ``solver``, ``report``. The names here are the public ones. The method is "Fast Cutting of Cage Based
+Deformation with Walk on Spheres"; bit-identical updates and harmonic control variates go past it.
 """
 
 from __future__ import annotations

@@ -24,6 +24,7 @@ KNOWN_ROOMS = {
     "usd": ("geometry", "cage", "surface"),
     "wrap": ("geometry", "cage", "surface", "usd"),
     "solver": ("geometry", "section", "cage", "harmonic", "surface", "elastic", "usd", "wrap"),
+    "report": ("geometry", "section", "cage", "harmonic", "surface", "elastic", "usd", "wrap", "solver"),
 }
 # What stands inside a room, from the bottom up: each line may know those above it and itself.
 LEVELS = {
@@ -41,11 +42,11 @@ LEVELS = {
     ),
 }
 FEATURES = {
-    "newton": ("solver",),
+    "newton": ("solver", "report"),
     "pxr": ("usd",),
     "pymeshlab": ("wrap",),
-    "scipy": ("elastic", "wrap", "solver"),
-    "warp": ("harmonic", "elastic", "solver"),
+    "scipy": ("elastic", "wrap", "solver", "report"),
+    "warp": ("harmonic", "elastic", "solver", "report"),
 }
 LINE_LIMIT, FILE_LIMIT = 450, 17
 

@@ -11,8 +11,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 from assets import bunny, gingerbread
-from benchmarks.paper import TABLE_1
 from newton_cagecut.cage import Cage, boundary_distances
+from newton_cagecut.report.paper.published import TABLE_1
 from newton_cagecut.usd import MeshData, read_cage, read_mesh, read_surface
 
 ASSETS = Path(__file__).parent.parent / "assets"

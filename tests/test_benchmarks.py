@@ -9,9 +9,14 @@ import pytest
 from PIL import Image
 
 from benchmarks import accuracy, locality, pictures, table1
-from benchmarks.progressive import edits, step_count
+from benchmarks.__main__ import NAMES
+from benchmarks.__main__ import main as run_benchmark
+from benchmarks.comparison import compared
 from benchmarks.scenes import SCENES
 from newton_cagecut import HarmonicCoordinates
+from newton_cagecut.report.bench import spread
+from newton_cagecut.report.paper.cutting import edits, step_count
+from newton_cagecut.report.paper.table1 import HEAD, measure_table, recompute_seconds
 
 PIECES = {"dude": 2, "starfish": 2, "key": 4, "octopus": 2, "jelly": 2, "sphere": 2}
 
@@ -49,36 +54,64 @@ def test_table_has_our_row_and_the_papers(capsys, tmp_path):
     """A run measures every step of every cut and three recomputes, and writes both rows as Markdown."""
     file = tmp_path / "table.md"
     (measured,) = table1.main(["--scene", "jelly", "--walks", "4", "--device", "cpu", "--markdown", str(file)])
-    assert (len(measured.steps), len(measured.recomputes), measured.point_count) == (34, 3, 2210)
-    assert measured.update_ms == pytest.approx(sum(measured.mean_ms(part) for part in table1.PARTS))
-    assert measured.memory["landings"] + measured.memory["bounds"] <= 64 * measured.walk_count
+    assert (measured.step_count, measured.recompute_count, measured.point_count) == (34, 3, 2210)
+    assert measured.update_ms == pytest.approx(sum(measured.part_ms.values()))
+    assert measured.cache_bytes <= 64 * measured.walk_count
     assert "bit for bit" in capsys.readouterr().out
     rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in file.read_text().splitlines()[2:]]
     assert [row[0] for row in rows] == ["scene", "---", "jelly", "(paper)"]
-    assert {len(row) for row in rows} == {len(table1.HEAD)}
+    assert {len(row) for row in rows} == {len(HEAD)}
     assert rows[3][-3:] == ["4.2", "115", "520"]
+
+
+def test_benchmarks_are_run_by_their_names(capsys):
+    """The list names each with a line, and an unknown one exits with 2."""
+    assert run_benchmark([]) == 0
+    assert all(f"  {name} " in capsys.readouterr().out for name in NAMES[:1])
+    assert run_benchmark(["speed"]) == 2
+    assert "there is no benchmark 'speed'" in capsys.readouterr().err
+
+
+def test_runs_are_compared(tmp_path, capsys):
+    """A run compared with its own file says how the times differ, and not what is the same."""
+    kept, command = tmp_path / "kept.json", ["table1", "--scene", "jelly", "--walks", "2", "--device", "cpu"]
+    run_benchmark([*command, "--json", str(kept)])
+    run_benchmark([*command, "--compare", str(kept)])
+    lines = capsys.readouterr().out.split(f"compared with {kept}")[1].splitlines()
+    assert any(line.startswith("jelly") and "recompute ms" in line for line in lines)
+    assert not any("re-walk %" in line or "(paper)" in line for line in lines)
+
+
+def test_comparison_matches_rows_by_their_names():
+    """Rows are known by their leading texts; a new one is named, and the ratio is of the new to the old."""
+    head = ["scene", "what", "ms"]
+    old = {"title": "times", "head": head, "rows": [["a", "x", "2.0"], ["a", "y", "3"]]}
+    new = {"title": "times", "head": head, "rows": [["b", "x", "1"], ["a", "x", "1.0"], ["a", "y", "3"]]}
+    table = [line.split() for line in compared([old], [new])[1:]]
+    assert table == [["b", "x", "none", "new"], ["a", "x", "ms", "2.0", "1.0", "0.50"]]
+    assert compared([old], [old]) == ["nothing differs"]
 
 
 def test_quadrature_points_have_gradients_besides():
     """With gradients there are about 600 points more."""
-    measured = table1.measure(SCENES["jelly"], 2, gradients=True, progress=False, device="cpu")
+    measured = measure_table(SCENES["jelly"], 2, gradients=True, device="cpu")
     assert 500 < measured.point_count - len(SCENES["jelly"].points) < 700
-    assert measured.memory["gradients"] > 0
+    assert measured.gradient_bytes > 0
 
 
 def test_recompute_that_differs_is_refused():
     """Weights that are not those of a recompute are told, not timed."""
     coordinates = HarmonicCoordinates(SCENES["sphere"].cage, SCENES["sphere"].points[:4], 4, device="cpu")
-    assert table1.recompute(coordinates) > 0.0
+    assert recompute_seconds(coordinates) > 0.0
     coordinates.weights_array.zero_()
     with pytest.raises(ValueError, match="other weights"):
-        table1.recompute(coordinates)
+        recompute_seconds(coordinates)
 
 
 def test_errors_are_lower_with_control_variates():
     """Plain Monte Carlo gains 1 over itself; the harmonic correction more, on weights and on gradients."""
     scene = SCENES["sphere"]
-    points = accuracy.spread(0.8 * scene.points, 30)
+    points = spread(0.8 * scene.points, 30)
     for gradients in (False, True):
         errors = accuracy.measure(
             scene.cage, points, 64, gradients=gradients, runs=2, long_walks=2048, quads="mean_value", device="cpu"
@@ -101,7 +134,7 @@ def test_errors_are_grouped_from_the_walls_inward():
 def test_error_of_the_reference_is_taken_off():
     """Where runs and long runs have equally many walks, half of the raw difference is the reference's own, and goes."""
     scene = SCENES["jelly"]
-    points = accuracy.spread(0.7 * scene.points + (0.0, 0.0, 0.06), 60)
+    points = spread(0.7 * scene.points + (0.0, 0.0, 0.06), 60)
     fair = accuracy.measure(scene.cage, points, 64, gradients=False, runs=4, long_walks=1024, device="cpu")
     poor = accuracy.measure(scene.cage, points, 64, gradients=False, runs=4, long_walks=64, device="cpu")
     assert poor.reference.sum() > 5.0 * fair.reference.sum()

@@ -61,14 +61,14 @@ def test_options_reach_the_solve(model):
 @pytest.mark.parametrize(
     ("options", "error", "match"),
     [
-        ({"tolerance": 0.0}, ValueError, r"tolerance is 0\.0; it must lie in \(0, 1\)"),
-        ({"tolerance": 1.0}, ValueError, r"tolerance is 1\.0"),
-        ({"tolerance": float("nan")}, ValueError, "tolerance is nan; it must be finite"),
-        ({"tolerance": "1e-5"}, TypeError, "tolerance is '1e-5'; it must be a number"),
-        ({"tolerance": None}, TypeError, "tolerance is None; it must be a number"),
-        ({"max_iterations": 0}, ValueError, "max_iterations is 0; it must be at least 1"),
-        ({"max_iterations": 2.5}, TypeError, r"max_iterations is 2\.5; it must be an integer"),
-        ({"max_iterations": True}, TypeError, "max_iterations is True; it must be an integer"),
+        ({"tolerance": 0.0}, ValueError, r"tolerance must lie in \(0, 1\), got 0\.0"),
+        ({"tolerance": 1.0}, ValueError, r"tolerance must lie in \(0, 1\), got 1\.0"),
+        ({"tolerance": float("nan")}, ValueError, "tolerance must be a number, got nan"),
+        ({"tolerance": float("inf")}, ValueError, r"tolerance must lie in \(0, 1\), got inf"),
+        ({"tolerance": "fine"}, TypeError, "tolerance must be a number, got 'fine'"),
+        ({"tolerance": None}, TypeError, "tolerance must be a number, got None"),
+        ({"max_iterations": 0}, ValueError, "max_iterations must be at least 1, got 0"),
+        ({"max_iterations": 2.5}, TypeError, r"max_iterations must be an integer, got 2\.5"),
     ],
 )
 def test_values_out_of_range_are_refused(model, options, error, match):
@@ -83,5 +83,5 @@ def test_unknown_options_are_refused(model):
     """An unknown option is named, with those that there are."""
     with pytest.raises(TypeError, match="no option tolerence; there are max_iterations, tolerance"):
         cagecut.SolverCageCut(model, tolerence=0.1)
-    with pytest.raises(TypeError, match=r"config is a dict; it must be a SolverCageCut\.Config"):
+    with pytest.raises(TypeError, match=r"config must be a SolverCageCut\.Config, or be left out, got a dict"):
         cagecut.SolverCageCut(model, {"tolerance": 0.1})

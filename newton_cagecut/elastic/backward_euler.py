@@ -10,7 +10,7 @@ from dv = dt g, so that free fall is exact.
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import warp as wp
 
@@ -18,6 +18,15 @@ from . import limit, plane_confinement, step_kernels
 from .arrays import BodyArrays, make_linear_system, make_step_arrays
 from .conjugate_gradient import ConjugateGradient
 from .launching import record, record_block
+
+
+class Motion(NamedTuple):
+    """Where a body's vertices are and how fast; shapes (vertex_capacity,) vec3."""
+
+    positions: wp.array
+    """Positions [m]."""
+    velocities: wp.array
+    """Velocities [m/s]."""
 
 
 class LinearTerm(Protocol):
@@ -55,10 +64,8 @@ class BackwardEuler:
 
     def step(
         self,
-        positions: wp.array,
-        velocities: wp.array,
-        positions_out: wp.array,
-        velocities_out: wp.array,
+        before: Motion,
+        after: Motion,
         dt: float,
         *,
         gravity: wp.array,
@@ -67,21 +74,21 @@ class BackwardEuler:
     ) -> None:
         """Advance the vertices by one step; see ``ReducedSystem.step``."""
         body, step, system = self.body, self.arrays, self.system
-        self._launch(step_kernels.begin_step, [dt, positions, velocities, gravity, body, step, system])
+        self._launch(step_kernels.begin_step, [dt, *before, gravity, body, step, system])
         if self.is_plane:
             self._launch(plane_confinement.confine_start, [body, step, system])
         self._strain.launch()
         forces = self._no_forces if forces is None else forces
         self._launch(step_kernels.find_residual, [dt, forces, body, step, system])
         self._solve(dt, term)
-        self._launch(limit.find_velocities, [velocities, step, system])
+        self._launch(limit.find_velocities, [before.velocities, step, system])
         if self.is_plane:
             self._launch(plane_confinement.confine_velocities, [body, step])
         wp.launch(limit.find_rates, dim=self._point_count, inputs=[dt, body, step], device=self.device)
         self._find_limit.launch()
-        self._launch(limit.finish_step, [dt, positions, velocities, body, step, positions_out, velocities_out])
+        self._launch(limit.finish_step, [dt, *before, body, step, *after])
         if self.is_plane:
-            self._launch(plane_confinement.confine_end, [body, positions_out, velocities_out])
+            self._launch(plane_confinement.confine_end, [body, *after])
 
     def _solve(self, dt: float, term: LinearTerm | None) -> None:
         """Solve for the change of the velocities."""

@@ -9,7 +9,7 @@ import numpy as np
 import warp as wp
 
 from .arrays import make_body_arrays
-from .backward_euler import BackwardEuler, LinearTerm
+from .backward_euler import BackwardEuler, LinearTerm, Motion
 from .energy import Energy, EnergyMeter
 from .launching import record
 from .mass import record_masses
@@ -152,9 +152,8 @@ class ReducedSystem:
             forces: Further forces on the vertices, shape (vertex_capacity,) vec3 [N].
             term: A further term of the system.
         """
-        self._integrator.step(
-            positions, velocities, positions_out, velocities_out, dt, gravity=gravity, forces=forces, term=term
-        )
+        before, after = Motion(positions, velocities), Motion(positions_out, velocities_out)
+        self._integrator.step(before, after, dt, gravity=gravity, forces=forces, term=term)
 
     def energy(self, positions: wp.array, velocities: wp.array) -> Energy:
         """Energies of a state, read on the host: for reports, not for captured code.

@@ -6,7 +6,7 @@ Meshes, triangulation, winding numbers, distances, overlaps, vectors, and the ch
 makes.
 """
 
-from .arguments import as_index, as_integers, as_loops, as_number, as_points, as_vector, check_finite
+from .arguments import as_index, as_integers, as_length, as_loops, as_number, as_points, as_vector, check_finite
 from .distances import (
     edge_distances,
     nearest_on_edges,
@@ -28,6 +28,7 @@ __all__ = [
     "PolygonMesh",
     "as_index",
     "as_integers",
+    "as_length",
     "as_loops",
     "as_number",
     "as_points",

@@ -34,6 +34,26 @@ def as_number(value: float, what: str, *, limits: tuple[float, float] | None = N
     return number
 
 
+def as_length(value: float, what: str) -> float:
+    """A positive, finite length [m].
+
+    Args:
+        value: What was passed.
+        what: What it is, for the error.
+
+    Raises:
+        TypeError: If it is not a number.
+        ValueError: If it is not positive or not finite.
+    """
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{what} must be a length [m], got {value!r}") from None
+    if not (np.isfinite(number) and number > 0.0):
+        raise ValueError(f"{what} must be positive, got {number} m")
+    return number
+
+
 def as_index(value: int, what: str, *, limits: tuple[int, int] | None = None) -> int:
     """An integer.
 

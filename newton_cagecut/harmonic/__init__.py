@@ -7,7 +7,16 @@ from .cache.domain import Domain
 from .cache.snapshot import CoordinatesSnapshot
 from .coordinates import HarmonicCoordinates
 from .journal import Journal
+from .options import check_options
 from .point_change import PointChange
 from .stats import UpdateStats
 
-__all__ = ["CoordinatesSnapshot", "Domain", "HarmonicCoordinates", "Journal", "PointChange", "UpdateStats"]
+__all__ = [
+    "CoordinatesSnapshot",
+    "Domain",
+    "HarmonicCoordinates",
+    "Journal",
+    "PointChange",
+    "UpdateStats",
+    "check_options",
+]

@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -43,7 +44,7 @@ class WalkOptions:
             value = getattr(self, name)
             if not isinstance(value, (int, np.integer)) or not low <= value <= high:
                 raise ValueError(f"{name} must be a whole number from {low} to {high}, not {value!r}")
-        if not 1.0e-6 <= self.epsilon <= 0.1:
+        if not isinstance(self.epsilon, (int, float, np.number)) or not 1.0e-6 <= self.epsilon <= 0.1:
             raise ValueError(f"epsilon must lie between 1e-6 and 0.1 (relative to the cage), not {self.epsilon!r}")
 
 
@@ -60,3 +61,25 @@ def require_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
     """
     if value not in choices:
         raise ValueError(f"{name} must be one of {', '.join(choices)}, not {value!r}")
+
+
+def check_options(options: Mapping[str, object], owner: str) -> None:
+    """Refuse what coordinates would refuse, before there are any.
+
+    Args:
+        options: Keyword options of ``HarmonicCoordinates`` that say how it walks and resolves, walks and seed included.
+        owner: What takes the options, for the error.
+
+    Raises:
+        TypeError: There is no such option.
+        ValueError: A value is out of its range.
+    """
+    choices = {"distance": DISTANCES, "quads": QUADS}
+    known = [field.name for field in fields(WalkOptions)] + list(choices)
+    unknown = [name for name in options if name not in known]
+    if unknown:
+        raise TypeError(f"{owner} has no option {', '.join(unknown)}; options of the weights are {', '.join(known)}")
+    for name, values in choices.items():
+        if options.get(name) is not None:
+            require_choice(name, options[name], values)
+    WalkOptions(**{name: value for name, value in options.items() if name not in choices})

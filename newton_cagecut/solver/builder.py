@@ -20,6 +20,7 @@ import warp as wp
 from ..cage import Cage, check_inside
 from ..elastic import Material
 from ..surface import Surface
+from . import body_arguments as arguments
 from .definition import BodyDefinition, Capacity
 from .rest_frame import RestFrame
 
@@ -112,35 +113,36 @@ def add_cage_body(
         ValueError: Attributes are not registered, a mesh point lies outside the cage, the mesh is not of the cage's
             dimension, or a value is out of range.
     """
+    if not isinstance(builder, newton.ModelBuilder):
+        raise TypeError(f"builder must be a newton.ModelBuilder, got {type(builder).__name__}")
     if not isinstance(cage, Cage):
         raise TypeError(f"cage must be a Cage, got {type(cage).__name__}")
-    if f"{FREQUENCY}" not in builder.custom_frequencies:
+    if FREQUENCY not in builder.custom_frequencies:
         raise ValueError("call SolverCageCut.register_custom_attributes(builder) before add_cage_body")
-    surface = _surface_of(mesh)
-    thickness = _thickness_of(cage, surface, thickness)
+    surface = arguments.as_surface(mesh)
+    thickness = arguments.as_thickness(thickness, cage, surface)
     check_inside(cage, surface.points)
-    index = len(builder.custom_attributes["cagecut:definition"].values or [])
-    if capacity is None:
-        capacity = Capacity.for_cuts(cage, surface) if cuttable else Capacity.without_cuts(cage, surface)
-    capacity.require(cage, surface)
+    labels = builder.custom_attributes["cagecut:body_label"].values or []
+    index = len(labels)
     definition = BodyDefinition(
-        label=label or f"cage_body_{index}",
+        label=arguments.as_label(label, index, labels),
         cage=cage,
         surface=surface,
-        material=material or Material(),
-        fixed=_fixed_mask(fixed, cage.vertex_count),
-        walks=walks or (2048 if wp.get_device().is_cuda else 256),
+        material=arguments.as_material(material),
+        fixed=arguments.as_fixed(fixed, cage.vertex_count),
+        walks=arguments.as_walks(walks, seed, options),
         seed=seed,
-        quadrature_count=max(300, 8 * cage.vertex_count) if quadrature is None else quadrature,
-        cuttable=cuttable,
-        capacity=capacity,
-        contact_radius=contact_radius,
+        quadrature_count=arguments.as_quadrature_count(quadrature, cage.vertex_count),
+        cuttable=arguments.as_flag(cuttable, "cuttable"),
+        capacity=arguments.as_capacity(capacity, cage, surface, cuttable=cuttable),
+        contact_radius=arguments.as_contact_radius(contact_radius, cage),
         thickness=thickness,
         options=options,
     )
-    frame = RestFrame.of_pose(xform or wp.transform_identity())
+    capacity, contact_radius = definition.capacity, definition.contact_radius
+    frame, velocity = RestFrame.of_pose(arguments.as_pose(xform)), arguments.as_velocity(velocity)
     if cage.dimension == 2:
-        velocity = frame.in_plane(np.asarray(velocity, dtype=np.float64))
+        velocity = frame.in_plane(velocity)
     vertex_start = _add_particles(builder, cage.vertices, capacity.vertices, frame, velocity, radius=0.0, active=False)
     surface_start = -1
     if contact_radius is not None:
@@ -157,49 +159,6 @@ def add_cage_body(
         }
     )
     return index
-
-
-def _surface_of(mesh: Surface | tuple[np.ndarray, np.ndarray] | newton.Mesh) -> Surface:
-    if isinstance(mesh, Surface):
-        return mesh
-    if isinstance(mesh, newton.Mesh):
-        return Surface(np.asarray(mesh.vertices), np.asarray(mesh.indices).reshape(-1, 3))
-    if isinstance(mesh, tuple) and len(mesh) == 2:
-        return Surface(*mesh)
-    raise TypeError(f"mesh must be a Surface, a newton.Mesh or (points, triangles), got {type(mesh).__name__}")
-
-
-def _thickness_of(cage: Cage, surface: Surface, thickness: float | None) -> float | None:
-    """Thickness of a plane body, None of a solid one; refuses what is not of the cage's dimension."""
-    if surface.dimension != cage.dimension:
-        raise ValueError(
-            f"the cage is of dimension {cage.dimension} and the mesh of dimension {surface.dimension}; give mesh "
-            f"points of {cage.dimension} numbers"
-        )
-    if cage.dimension == 3:
-        if thickness is not None:
-            raise ValueError(f"only a plane body has a thickness, and the cage is not plane; got thickness={thickness}")
-        return None
-    thickness = 1.0 if thickness is None else float(thickness)
-    if not (np.isfinite(thickness) and thickness > 0.0):
-        raise ValueError(f"the thickness of a plane body must be positive, got {thickness} m")
-    return thickness
-
-
-def _fixed_mask(fixed: np.ndarray | Sequence[int] | None, vertex_count: int) -> np.ndarray:
-    mask = np.zeros(vertex_count, dtype=bool)
-    if fixed is None:
-        return mask
-    fixed = np.asarray(fixed)
-    if fixed.dtype == bool:
-        if fixed.shape != (vertex_count,):
-            raise ValueError(f"the mask fixed must have the shape ({vertex_count},), got {fixed.shape}")
-        return fixed.copy()
-    wrong = fixed[(fixed < 0) | (fixed >= vertex_count)]
-    if wrong.size:
-        raise ValueError(f"fixed names vertex {wrong.flat[0]}, but the cage has {vertex_count} vertices")
-    mask[fixed] = True
-    return mask
 
 
 def _add_particles(

@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
-import math
-import operator
 from dataclasses import dataclass, fields, replace
+
+from ..geometry import as_index, as_number
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,15 +26,12 @@ class Config:
     """Factor by which a step's linear solve shrinks the preconditioned residual, in (0, 1)."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "max_iterations", _as_count("max_iterations", self.max_iterations))
-        object.__setattr__(self, "tolerance", _as_number("tolerance", self.tolerance))
+        object.__setattr__(self, "max_iterations", as_index(self.max_iterations, "SolverCageCut max_iterations"))
+        object.__setattr__(self, "tolerance", as_number(self.tolerance, "SolverCageCut tolerance"))
         if self.max_iterations < 1:
-            raise ValueError(f"SolverCageCut max_iterations is {self.max_iterations}; it must be at least 1.")
+            raise ValueError(f"SolverCageCut max_iterations must be at least 1, got {self.max_iterations}")
         if not 0.0 < self.tolerance < 1.0:
-            raise ValueError(
-                f"SolverCageCut tolerance is {self.tolerance}; it must lie in (0, 1): 1e-5 is the default, larger is "
-                "faster."
-            )
+            raise ValueError(f"SolverCageCut tolerance must lie in (0, 1), got {self.tolerance}: larger is faster")
 
     @classmethod
     def of(cls, config: Config | None, options: dict[str, object]) -> Config:
@@ -48,33 +45,10 @@ class Config:
             config = cls()
         if not isinstance(config, cls):
             raise TypeError(
-                f"SolverCageCut config is a {type(config).__name__}; it must be a SolverCageCut.Config, or be left out."
+                f"SolverCageCut config must be a SolverCageCut.Config, or be left out, got a {type(config).__name__}"
             )
         known = [field.name for field in fields(cls)]
         unknown = [name for name in options if name not in known]
         if unknown:
-            raise TypeError(f"SolverCageCut has no option {', '.join(unknown)}; there are {', '.join(known)}.")
+            raise TypeError(f"SolverCageCut has no option {', '.join(unknown)}; there are {', '.join(known)}")
         return replace(config, **options)
-
-
-def _as_count(name: str, value: int) -> int:
-    """One value as an integer."""
-    try:
-        if isinstance(value, bool):
-            raise TypeError("a truth value is no count")
-        return operator.index(value)
-    except TypeError as error:
-        raise TypeError(f"SolverCageCut {name} is {value!r}; it must be an integer.") from error
-
-
-def _as_number(name: str, value: float) -> float:
-    """One value as a finite float."""
-    try:
-        if isinstance(value, bool | str):
-            raise TypeError("neither truth values nor text are numbers")
-        number = float(value)
-    except (TypeError, ValueError) as error:
-        raise TypeError(f"SolverCageCut {name} is {value!r}; it must be a number.") from error
-    if not math.isfinite(number):
-        raise ValueError(f"SolverCageCut {name} is {number}; it must be finite.")
-    return number

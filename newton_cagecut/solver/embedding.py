@@ -10,21 +10,47 @@ import warp as wp
 wp.set_module_options({"enable_backward": False})
 
 
+@wp.struct
+class SurfaceRows:
+    """The rows of a body's surface points among its coordinates' points."""
+
+    weights: wp.array2d[float]
+    """Weights of all points, one a point and vertex."""
+    first_row: int
+    """Row of the surface's first point."""
+    point_count: wp.array[wp.int32]
+    """Number of surface points, shape (1,)."""
+    vertex_count: wp.array[wp.int32]
+    """Number of vertices in use, shape (1,)."""
+
+
+def make_surface_rows(
+    weights: wp.array, first_row: int, *, point_count: wp.array, vertex_count: wp.array
+) -> SurfaceRows:
+    """The rows of a body's surface points; the arrays are used in place."""
+    rows = SurfaceRows()
+    rows.weights, rows.first_row = weights, first_row
+    rows.point_count, rows.vertex_count = point_count, vertex_count
+    return rows
+
+
+@wp.func
+def at_surface_point(i: int, values: wp.array[wp.vec3], rows: SurfaceRows) -> wp.vec3:
+    """A field of vertex values at a surface point."""
+    total = wp.vec3()
+    for j in range(rows.vertex_count[0]):
+        total += rows.weights[rows.first_row + i, j] * values[j]
+    return total
+
+
 @wp.kernel(enable_backward=False)
 def embed(
     enabled: wp.array[wp.int32],
-    weights: wp.array2d[float],
-    first_row: int,
-    point_count: wp.array[wp.int32],
-    vertex_count: wp.array[wp.int32],
     vertices: wp.array[wp.vec3],
+    rows: SurfaceRows,
     points: wp.array[wp.vec3],
 ):
     """Sum a vertex field with the weights of each surface point."""
     i = wp.tid()
-    if i >= point_count[0] or enabled[0] == 0:
-        return
-    total = wp.vec3()
-    for j in range(vertex_count[0]):
-        total += weights[first_row + i, j] * vertices[j]
-    points[i] = total
+    if i < rows.point_count[0] and enabled[0] != 0:
+        points[i] = at_surface_point(i, vertices, rows)

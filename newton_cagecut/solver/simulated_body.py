@@ -22,7 +22,7 @@ from .config import Config
 from .contact.contact_term import ContactTerm
 from .definition import BodyDefinition
 from .edit_stamps import EditStamps, hold_rows, state_edits
-from .embedding import embed
+from .embedding import embed, make_surface_rows
 from .rest_frame import RestFrame
 
 _NUDGE = 1.0e-6
@@ -68,6 +68,12 @@ class SimulatedBody:
         # Counts live on the device and launches cover the capacity, so that a captured graph stays valid across cuts.
         self.point_count = wp.zeros(1, dtype=wp.int32, device=self.device)
         self.vertex_count = wp.array([definition.cage.vertex_count], dtype=wp.int32, device=self.device)
+        self.surface_rows = make_surface_rows(
+            self.coordinates.weights_array,
+            self.surface_row,
+            point_count=self.point_count,
+            vertex_count=self.vertex_count,
+        )
         self.rest = wp.clone(model.particle_q[self.vertices])
         self.fixed = wp.array(self._padded(definition.fixed), dtype=wp.int32, device=self.device)
         world = int(model.particle_world.numpy()[vertex_start])
@@ -295,15 +301,7 @@ class SimulatedBody:
         return surface.points[indices] + _NUDGE * self.definition.cage.diameter * surface.directions_inward(indices)
 
     def _embed(self, vertices: wp.array, points: wp.array, enabled: wp.array | None) -> None:
-        inputs = [
-            self._always if enabled is None else enabled,
-            self.coordinates.weights_array,
-            self.surface_row,
-            self.point_count,
-            self.vertex_count,
-            vertices,
-            points,
-        ]
+        inputs = [self._always if enabled is None else enabled, vertices, self.surface_rows, points]
         wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
 
     def _sample(self) -> BodyQuadrature | None:

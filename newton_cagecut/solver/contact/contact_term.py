@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 import newton
 import warp as wp
 
-from . import contact_kernels as kernels
+from . import contact_kernels
+from .contact_arrays import contact_model, contact_state, make_touched_points, soft_contacts
 
 if TYPE_CHECKING:
     from ..simulated_body import SimulatedBody
@@ -30,87 +31,53 @@ class ContactTerm:
 
     def __init__(self, body: SimulatedBody) -> None:
         self._body = body
-        count = body.capacity.surface_points
-        with wp.ScopedDevice(body.device):
-            self._force = wp.zeros(count, dtype=wp.vec3)
-            self._stiffness = wp.zeros(count, dtype=wp.mat33)
-            self._damping = wp.zeros(count, dtype=wp.mat33)
-            self._system = wp.zeros(count, dtype=wp.mat33)
-            self._product = wp.zeros(count, dtype=wp.vec3)
-            self._touching = wp.zeros(count, dtype=wp.int32)
-            self._touching_count = wp.zeros(1, dtype=wp.int32)
+        self.points = make_touched_points(body.capacity.surface_points, body.device)
 
     @property
     def byte_count(self) -> int:
         """Bytes on the device."""
-        return self._force.size * (3 * 36 + 2 * 12 + 4)
+        return self.points.force.size * (3 * 36 + 2 * 12 + 4)
 
     def collect(self, state: newton.State, contacts: newton.Contacts) -> None:
         """Sum the soft contacts of each surface point."""
-        body, model = self._body, self._body.model
-        for array in (self._force, self._stiffness, self._damping, self._touching_count):
+        body, model, points = self._body, self._body.model, self.points
+        for array in (points.force, points.stiffness, points.damping, points.touching_count):
             array.zero_()
         if model.shape_count == 0 or contacts.soft_contact_max == 0:
             return
-        material = wp.vec3(model.soft_contact_ke, model.soft_contact_kd, model.soft_contact_mu)
         wp.launch(
-            kernels.collect_contacts,
+            contact_kernels.collect_contacts,
             dim=contacts.soft_contact_max,
             inputs=[
-                contacts.soft_contact_count,
-                contacts.soft_contact_particle,
-                contacts.soft_contact_shape,
-                contacts.soft_contact_body_pos,
-                contacts.soft_contact_body_vel,
-                contacts.soft_contact_normal,
+                soft_contacts(contacts),
+                contact_model(model),
+                contact_state(state),
                 body.surface_particles.start,
-                body.point_count,
-                state.particle_q,
-                state.particle_qd,
-                model.particle_radius,
-                state.body_q,
-                state.body_qd,
-                model.body_com,
-                model.shape_body,
-                model.shape_material_ke,
-                model.shape_material_kd,
-                model.shape_material_mu,
-                material,
-                self._force,
-                self._stiffness,
-                self._damping,
+                body.surface_rows,
+                points,
             ],
             device=body.device,
         )
-        wp.launch(
-            kernels.list_touching,
-            dim=body.capacity.surface_points,
-            inputs=[body.point_count, self._stiffness, self._touching, self._touching_count],
-            device=body.device,
-        )
+        self._launch_points(contact_kernels.list_touching, [])
 
     def add_residual(self, dt: float, predicted: wp.array, residual: wp.array, blocks: wp.array) -> None:
         """Add contact to the residual and to the matrix's diagonal blocks."""
-        self._launch_rows(
-            kernels.find_contact_residual,
-            [dt, predicted, self._force, self._stiffness, self._damping, self._system, self._product],
-        )
-        self._launch_vertices(kernels.scatter_contact_residual, [self._system, self._product, residual, blocks])
+        self._launch_points(contact_kernels.find_contact_residual, [dt, predicted])
+        self._launch_vertices(contact_kernels.add_contact_residual, [residual, blocks])
 
     def add_product(self, direction: wp.array, product: wp.array) -> None:
         """Add the product of the contact matrix with a direction."""
-        self._launch_rows(kernels.find_contact_product, [direction, self._system, self._product])
-        self._launch_vertices(kernels.scatter_contact_product, [self._product, product])
+        self._launch_points(contact_kernels.find_contact_product, [direction])
+        self._launch_vertices(contact_kernels.add_contact_product, [product])
 
-    def _launch_rows(self, kernel: wp.Kernel, inputs: list) -> None:
+    def _launch_points(self, kernel: wp.Kernel, inputs: list) -> None:
+        """One launch over the surface's points."""
         body = self._body
-        lists = [self._touching, self._touching_count, body.coordinates.weights_array, body.surface_row]
-        wp.launch(
-            kernel, dim=body.capacity.surface_points, inputs=[*lists, body.vertex_count, *inputs], device=body.device
-        )
+        inputs = [*inputs, body.surface_rows, self.points]
+        wp.launch(kernel, dim=body.capacity.surface_points, inputs=inputs, device=body.device)
 
-    def _launch_vertices(self, kernel: wp.Kernel, inputs: list) -> None:
+    def _launch_vertices(self, kernel: wp.Kernel, results: list[wp.array]) -> None:
+        """One launch over the cage's vertices, which adds to results."""
         body = self._body
-        lists = [self._touching, self._touching_count, body.coordinates.weights_array, body.surface_row]
-        inputs = [*lists, body.vertex_count, body.fixed, *inputs]
+        inputs = [body.fixed, body.surface_rows, self.points, *results]
         wp.launch(kernel, dim=body.capacity.vertices, inputs=inputs, device=body.device)

@@ -1,0 +1,71 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""How much is measured: all of it, or a quick look."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Sizes of the measurements.
+
+    Attributes:
+        name: "full" or "quick".
+        point_count: Points of a scene: half of them vertices of its mesh, half quadrature points with gradients.
+        walk_counts: Walks a point whose errors are measured.
+        seeds: Seeds of these; each is a run of its own.
+        reference_runs: Long runs of the reference, with seeds of their own.
+        reference_walks: Walks a point of each.
+        row_walks: Walks a point where the walks are not what is varied.
+        mesh_sizes: Longest edges of the finite elements, relative to the mean edge of the cage.
+        table_walks: Walks a point of the paper's table.
+        face_counts: Faces of the cages whose growth is measured.
+        point_counts: Points whose growth is measured.
+    """
+
+    name: str
+    point_count: int
+    walk_counts: tuple[int, ...]
+    seeds: tuple[int, ...]
+    reference_runs: int
+    reference_walks: int
+    row_walks: int
+    mesh_sizes: tuple[float, ...]
+    table_walks: int
+    face_counts: tuple[int, ...]
+    point_counts: tuple[int, ...]
+
+    def settings(self) -> dict:
+        """All of it as JSON can hold it."""
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
+
+
+QUICK = Effort(
+    name="quick",
+    point_count=128,
+    walk_counts=(8, 32, 128, 512),
+    seeds=(1, 2),
+    reference_runs=4,
+    reference_walks=4096,
+    row_walks=256,
+    mesh_sizes=(0.5, 0.25),
+    table_walks=32,
+    face_counts=(50, 200, 800),
+    point_counts=(100, 400, 1600),
+)
+FULL = Effort(
+    name="full",
+    point_count=512,
+    walk_counts=tuple(1 << k for k in range(3, 13)),
+    seeds=(1, 2, 3, 4),
+    reference_runs=8,
+    reference_walks=8192,
+    row_walks=1024,
+    mesh_sizes=(1.0, 0.5, 0.25, 0.125),
+    table_walks=256,
+    face_counts=(50, 100, 200, 400, 800, 1600, 3200),
+    point_counts=(1000, 4000, 16000, 64000),
+)

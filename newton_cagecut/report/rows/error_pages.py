@@ -1,0 +1,139 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The page's part on error against run time: a plot and a table a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ..bench import STAGES
+from ..measurement import Record, chosen, scenes_of
+from ..page.chart import Chart, Line, Panel
+from ..page.markdown import Section, Table, seconds_text
+from .error import CORRECTIONS, KINDS
+from .error import NAME as ERROR
+from .error_curves import Curve, all_curves, walk_curve
+
+_TITLES = {"before": "before the cut", "during": "half way through the cut"}
+_Y_LABELS = {
+    "weights": "error of a point's weights",
+    "gradients": "relative error of gradients",
+    "surface": "error of the deformed surface / diameter",
+}
+_DRAWN = ("weights", "gradients")
+_PAPER = "affine"
+_TEXT = (
+    "Root mean square over the points: of the Euclidean norm of the errors of all of a point's weights; of that of its "
+    "gradients, relative to the gradients; of where a smooth motion takes it, relative to the cage's diameter. Times "
+    "are for all points, from the cage to the weights, kernels compiled before. Half way through the cut, walks are "
+    "updated by the last step of 3 % (filled) or all walked again (hollow, dashed), which gives the same weights bit "
+    "for bit; the finite elements are meshed and solved again. Errors near the grey band cannot be told from those of "
+    "the reference."
+)
+
+
+def error_sections(records: Sequence[Record]) -> Iterator[Section]:
+    """Write a section a scene.
+
+    Args:
+        records: All records.
+    """
+    scenes = [scene for scene in scenes_of(records) if chosen(records, ERROR, scene)]
+    if scenes:
+        yield Section("Error against run time", [_TEXT], [_gains(records, scenes)])
+    for scene in scenes:
+        yield Section(
+            f"Error against run time: {scene}",
+            _notes(records, scene),
+            [_table(records, scene)],
+            [_chart(records, scene)],
+        )
+
+
+def _notes(records: Sequence[Record], scene: str) -> list[str]:
+    notes = []
+    for record in chosen(records, "reference", scene):
+        found = record.values
+        checks = ", ".join(f"{check:.2f}" for stage in STAGES for check in found[stage]["check"])
+        notes.append(
+            f"{found['points']} points in a cage of {found['faces']} faces and {found['vertices']} vertices. Squared "
+            f"difference of the reference from plain runs over what both their errors lead to expect, weights and "
+            f"gradients before, then during the cut: {checks} (1 but for chance)."
+        )
+    failed = {
+        text
+        for record in chosen(records, "elements", scene)
+        for stage in STAGES
+        if (text := record.values[stage].get("failed"))
+    }
+    if not chosen(records, "elements", scene):
+        notes.append("Finite elements were not measured: scikit-fem or Netgen is not installed.")
+    return notes + [f"Finite elements failed: {text}." for text in sorted(failed)]
+
+
+def _table(records: Sequence[Record], scene: str) -> Table:
+    """The most accurate run of each method."""
+    rows = []
+    for stage in STAGES:
+        curves = {kind: all_curves(records, scene, stage, kind) for kind in KINDS}
+        for k, curve in enumerate(curves["weights"]):
+            errors = [f"{curves[kind][k].errors[-1]:.2e}" for kind in KINDS]
+            times = [seconds_text(curve.seconds[-1]), _whole(records, scene, curve, stage)]
+            rows.append([_TITLES[stage], curve.label, f"{curve.amount[-1]:.0f}", *errors, *times])
+    head = ["when", "method", "walks or unknowns", *KINDS, "time", "all walked again"]
+    return Table("Errors of the most accurate run of each method:", head, rows)
+
+
+def _whole(records: Sequence[Record], scene: str, curve: Curve, stage: str) -> str:
+    """The time of the full recompute beside that of the update, of the run with the most walks."""
+    for correction in CORRECTIONS if stage == "during" else ():
+        whole = walk_curve(records, scene, correction, stage, "weights", seconds="whole_seconds")
+        if whole.label == curve.label:
+            return seconds_text(whole.seconds[-1])
+    return ""
+
+
+def _gains(records: Sequence[Record], scenes: Sequence[str]) -> Table:
+    """Squared errors of the paper's method over those of others, at equal run time."""
+    rows = []
+    for scene in scenes:
+        for stage in STAGES:
+            cells = []
+            for correction in (name for name in CORRECTIONS if name != _PAPER):
+                for kind in _DRAWN:
+                    curves = [walk_curve(records, scene, name, stage, kind) for name in (_PAPER, correction)]
+                    cells.append("" if any(curve.empty for curve in curves) else f"{_gain(*curves):.2f}")
+            rows.append([scene, _TITLES[stage], *cells])
+    head = [f"{kind}, {name}" for name in CORRECTIONS if name != _PAPER for kind in _DRAWN]
+    title = (
+        "Squared error of the paper's method (affine) over that of another correction, at equal run time: the squared "
+        "errors times the times of the most walks, because the one falls as the other grows."
+    )
+    return Table(title, ["scene", "when", *head], rows)
+
+
+def _gain(paper: Curve, other: Curve) -> float:
+    costs = [curve.errors[-1] ** 2 * curve.seconds[-1] for curve in (paper, other)]
+    return float(costs[0] / costs[1])
+
+
+def _chart(records: Sequence[Record], scene: str) -> Chart:
+    panels = [[_panel(records, scene, stage, kind) for stage in STAGES] for kind in _DRAWN]
+    return Chart(f"error_{scene}", f"{scene}: error against run time", panels)
+
+
+def _panel(records: Sequence[Record], scene: str, stage: str, kind: str) -> Panel:
+    lines = []
+    for curve in all_curves(records, scene, stage, kind):
+        marker = "o" if curve.label.startswith("walks") else "s"
+        lines.append(Line(curve.label, curve.seconds.tolist(), curve.errors.tolist(), marker=marker))
+    for correction in CORRECTIONS if stage == "during" else ():
+        whole = walk_curve(records, scene, correction, stage, kind, seconds="whole_seconds")
+        if not whole.empty:
+            lines.append(Line(whole.label, whole.seconds.tolist(), whole.errors.tolist(), dashed=True))
+    floors = [record.values[stage]["own"][kind] for record in chosen(records, "reference", scene)]
+    floor = float(np.sqrt(floors[0])) if floors else None
+    return Panel(_TITLES[stage], "time [s]", _Y_LABELS[kind], lines, floor)

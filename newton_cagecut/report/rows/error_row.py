@@ -1,0 +1,36 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The row of error against run time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from ..bench import Bench
+from ..measurement import Measurement, Record
+from ..page.markdown import Section
+from .error import CORRECTIONS, NAME, measure_error, measure_reference
+from .error_pages import error_sections
+
+
+class ErrorRow:
+    """Squared errors and times of corrections, walks and seeds. They are drawn with those of the finite elements."""
+
+    name = NAME
+
+    def measurements(self, benches: Sequence[Bench]) -> Iterator[Measurement]:
+        """See ``Row``."""
+        for bench in benches:
+            yield Measurement("reference", bench.scene.name, {}, partial(measure_reference, bench))
+            for walks in bench.effort.walk_counts:
+                for correction in CORRECTIONS:
+                    for seed in bench.effort.seeds:
+                        chosen = {"correction": correction, "walks": walks, "seed": seed}
+                        run = partial(measure_error, bench, **chosen)
+                        yield Measurement(NAME, bench.scene.name, chosen, run)
+
+    def sections(self, records: Sequence[Record]) -> Iterator[Section]:
+        """See ``Row``."""
+        yield from error_sections(records)

@@ -1,0 +1,55 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Table 1 of the paper, its row under each of ours."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from functools import partial
+
+from ..bench import Bench
+from ..measurement import Measurement, Record, chosen
+from ..page.markdown import Section, Table
+from ..paper.published import TABLE_1
+from ..paper.table1 import HEAD, Measured, measure_table, paper_cells
+
+NAME = "table1"
+
+
+class PaperTableRow:
+    """The update against the full recompute, for all vertices of the mesh."""
+
+    name = NAME
+
+    def measurements(self, benches: Sequence[Bench]) -> Iterator[Measurement]:
+        """See ``Row``."""
+        for bench in benches:
+            yield Measurement(NAME, bench.scene.name, {}, partial(measure_paper_table, bench))
+
+    def sections(self, records: Sequence[Record]) -> Iterator[Section]:
+        """See ``Row``."""
+        rows, walks = [], []
+        for record in chosen(records, NAME):
+            rows.append(Measured(**record.values["measured"]).cells())
+            walks.append(record.values["walks"])
+            if record.scene in TABLE_1:
+                rows.append(paper_cells(TABLE_1[record.scene]))
+        if rows:
+            text = (
+                f"Means over the steps of 3 % of a scene's cuts, for all vertices of its mesh, {max(walks)} walks a "
+                "point here, and 2048 on an NVIDIA RTX 5090 in the paper's rows. The weights of the full recompute "
+                "were those of the updates, bit for bit."
+            )
+            yield Section("Table 1 of the paper: update against recompute", [text], [Table("", HEAD, rows)])
+
+
+def measure_paper_table(bench: Bench) -> dict:
+    """Measure a scene's row.
+
+    Args:
+        bench: The scene.
+    """
+    walks = bench.effort.table_walks
+    return {"walks": walks, "measured": asdict(measure_table(bench.scene, walks, device=bench.device))}

@@ -1,0 +1,269 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""The arguments of ``add_cage_body``, all checked before anything is added."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+import newton
+import numpy as np
+import warp as wp
+
+from ..cage import Cage
+from ..elastic import Material
+from ..geometry import as_index, as_length
+from ..harmonic import check_options
+from ..surface import Surface
+from .definition import Capacity
+
+
+def as_surface(mesh: Surface | tuple[np.ndarray, np.ndarray] | newton.Mesh) -> Surface:
+    """The surface that a mesh is.
+
+    Args:
+        mesh: What was passed.
+
+    Raises:
+        TypeError: It is no mesh.
+    """
+    if isinstance(mesh, Surface):
+        return mesh
+    if isinstance(mesh, newton.Mesh):
+        return Surface(np.asarray(mesh.vertices), np.asarray(mesh.indices).reshape(-1, 3))
+    if isinstance(mesh, tuple) and len(mesh) == 2:
+        return Surface(*mesh)
+    raise TypeError(f"mesh must be a Surface, a newton.Mesh or (points, triangles), got {type(mesh).__name__}")
+
+
+def as_material(material: Material | None) -> Material:
+    """The material, the default one for None.
+
+    Args:
+        material: What was passed.
+
+    Raises:
+        TypeError: It is none.
+    """
+    if material is None:
+        return Material()
+    if not isinstance(material, Material):
+        raise TypeError(f"material must be a Material, such as Material(young=1e5), got {material!r}")
+    return material
+
+
+def as_pose(xform: wp.transform | Sequence[float] | None) -> wp.transform:
+    """The pose, with a rotation of length one; the identity for None.
+
+    Args:
+        xform: What was passed.
+
+    Raises:
+        TypeError: It is not seven numbers.
+        ValueError: A number is not finite, or the quaternion is zero.
+    """
+    if xform is None:
+        return wp.transform_identity()
+    values = _as_finite(xform, "xform", 7, "a position and a quaternion, wp.transform(p, q)")
+    length = float(np.linalg.norm(values[3:]))
+    if length < 1.0e-6:
+        raise ValueError("xform: the quaternion is zero; wp.quat_identity() turns nothing")
+    return wp.transform(wp.vec3(*values[:3]), wp.quat(*(values[3:] / length)))
+
+
+def as_velocity(velocity: Sequence[float]) -> np.ndarray:
+    """A velocity, shape (3,) [m/s].
+
+    Args:
+        velocity: What was passed.
+
+    Raises:
+        TypeError: It is not three numbers.
+        ValueError: A number is not finite.
+    """
+    return _as_finite(velocity, "velocity", 3, "three numbers [m/s]")
+
+
+def as_fixed(fixed: np.ndarray | Sequence[int] | None, vertex_count: int) -> np.ndarray:
+    """Which cage vertices are fixed, shape (vertex_count,), bool.
+
+    Args:
+        fixed: What was passed: indices, a mask, or None.
+        vertex_count: Vertices of the cage.
+
+    Raises:
+        TypeError: It is neither indices nor a mask.
+        ValueError: It names a vertex that is not there, or a mask has another length.
+    """
+    mask = np.zeros(vertex_count, dtype=bool)
+    if fixed is None:
+        return mask
+    values = np.asarray(fixed)
+    if values.dtype == bool:
+        if values.shape != (vertex_count,):
+            raise ValueError(f"the mask fixed must have the shape ({vertex_count},), got {values.shape}")
+        return values.copy()
+    if values.size == 0:
+        return mask
+    if not np.issubdtype(values.dtype, np.integer) or values.ndim != 1:
+        raise TypeError(f"fixed must be indices of cage vertices or a mask over all {vertex_count}, got {fixed!r}")
+    wrong = values[(values < 0) | (values >= vertex_count)]
+    if wrong.size:
+        raise ValueError(f"fixed names vertex {wrong.flat[0]}, but the cage has {vertex_count} vertices")
+    mask[values] = True
+    return mask
+
+
+def as_walks(walks: int | None, seed: int, options: dict[str, object]) -> int:
+    """Walks a point, checked with the other options of the body's coordinates.
+
+    Args:
+        walks: What was passed; None for 256 on a CPU and 2048 (the paper's) on CUDA.
+        seed: Seed.
+        options: Further keyword options of ``HarmonicCoordinates``.
+
+    Raises:
+        TypeError: There is no such option.
+        ValueError: A value is out of its range.
+    """
+    if walks is None:
+        walks = 2048 if wp.get_device().is_cuda else 256
+    check_options({"walks": walks, "seed": seed, **options}, "add_cage_body")
+    return walks
+
+
+def as_quadrature_count(quadrature: int | None, vertex_count: int) -> int:
+    """Wanted number of quadrature points.
+
+    Args:
+        quadrature: What was passed; None for 8 a vertex, and at least 300.
+        vertex_count: Vertices of the cage.
+
+    Raises:
+        TypeError: It is not a whole number.
+        ValueError: It is negative.
+    """
+    if quadrature is None:
+        return max(300, 8 * vertex_count)
+    count = as_index(quadrature, "quadrature, the number of quadrature points,")
+    if count < 0:
+        raise ValueError(f"quadrature is a number of points, 0 for a body without elasticity; got {count}")
+    return count
+
+
+def as_flag(value: bool, what: str) -> bool:
+    """Yes or no.
+
+    Args:
+        value: What was passed.
+        what: What it is, for the error.
+
+    Raises:
+        TypeError: It is neither.
+    """
+    if not isinstance(value, bool | np.bool_):
+        raise TypeError(f"{what} must be True or False, got {value!r}")
+    return bool(value)
+
+
+def as_capacity(capacity: Capacity | None, cage: Cage, surface: Surface, *, cuttable: bool) -> Capacity:
+    """Room for cuts that the body itself fits in.
+
+    Args:
+        capacity: What was passed; None for the default.
+        cage: The cage.
+        surface: The surface.
+        cuttable: Whether the body can be cut.
+
+    Raises:
+        TypeError: It is no capacity.
+        ValueError: The body does not fit.
+    """
+    if capacity is None:
+        return Capacity.for_cuts(cage, surface) if cuttable else Capacity.without_cuts(cage, surface)
+    if not isinstance(capacity, Capacity):
+        raise TypeError(f"capacity must be a Capacity, such as Capacity.for_cuts(cage, surface), got {capacity!r}")
+    capacity.require(cage, surface)
+    return capacity
+
+
+def as_contact_radius(radius: float | None, cage: Cage) -> float | None:
+    """A radius of surface points [m]; None without contact.
+
+    Args:
+        radius: What was passed.
+        cage: The cage.
+
+    Raises:
+        TypeError: It is not a number.
+        ValueError: It is not positive, or larger than the body.
+    """
+    if radius is None:
+        return None
+    radius = as_length(radius, "contact_radius")
+    if radius > cage.diameter:
+        raise ValueError(
+            f"contact_radius is that of the surface's points; {radius:g} m is more than the cage's size of "
+            f"{cage.diameter:g} m"
+        )
+    return radius
+
+
+def as_thickness(thickness: float | None, cage: Cage, surface: Surface) -> float | None:
+    """Thickness of a plane body, None of a solid one [m]; refuses what is not of the cage's dimension.
+
+    Args:
+        thickness: What was passed.
+        cage: The cage.
+        surface: The surface.
+
+    Raises:
+        TypeError: It is not a number.
+        ValueError: It is not positive, or of a solid body, or the mesh is not of the cage's dimension.
+    """
+    if surface.dimension != cage.dimension:
+        raise ValueError(
+            f"the cage is of dimension {cage.dimension} and the mesh of dimension {surface.dimension}; give mesh "
+            f"points of {cage.dimension} numbers"
+        )
+    if cage.dimension == 3:
+        if thickness is not None:
+            raise ValueError(f"only a plane body has a thickness, and the cage is not plane; got thickness={thickness}")
+        return None
+    return 1.0 if thickness is None else as_length(thickness, "the thickness of a plane body")
+
+
+def as_label(label: str | None, index: int, taken: Collection[str]) -> str:
+    """The name of a body, which no other has.
+
+    Args:
+        label: What was passed; None for one made of the index.
+        index: Number of the body.
+        taken: Names of the bodies that are there.
+
+    Raises:
+        TypeError: It is no text.
+        ValueError: It is empty, or another body has it.
+    """
+    if label is None:
+        label = f"cage_body_{index}"
+    if not isinstance(label, str):
+        raise TypeError(f"label must be text, got {label!r}")
+    if not label:
+        raise ValueError("label is empty; leave it out for a name like cage_body_0")
+    if label in taken:
+        raise ValueError(f"there is a cage body {label!r} already; viewers and files tell bodies apart by their labels")
+    return label
+
+
+def _as_finite(values: Sequence[float], what: str, count: int, kind: str) -> np.ndarray:
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TypeError(f"{what} must be {kind}, got {values!r}") from None
+    if array.shape != (count,):
+        raise TypeError(f"{what} must be {kind}, got {values!r}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{what} is not finite: {array.tolist()}")
+    return array
