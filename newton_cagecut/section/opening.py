@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a mesh becomes when a section of it is opened up to a front: created vertices, faces, sides.
 
-Sections 4.3 and 5.2 of the paper. How faces are walked, or segments split, stands beside this file.
+Sections 4.3 and 5.2 of the paper. How loops of faces are walked, or segments split, stands beside this file.
 """
 
 from __future__ import annotations
@@ -12,12 +12,29 @@ from dataclasses import dataclass
 import numpy as np
 
 from .created_vertices import CreatedVertices
-from .face_walk import walk_faces
-from .numbering import Numbering
-from .opened_faces import OpenedFaces
 from .section import Section
-from .segment_split import split_segments
 from .swept_region import SweptRegion
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class OpenedFaces:
+    """The faces of a mesh after an opening."""
+
+    touched: np.ndarray
+    """Faces of the mesh that are slit or split, shape (touched_count,)."""
+    first_loops: list[list[int]]
+    """What stays in the place of each of them."""
+    extra_loops: list[list[int]]
+    """Loops split off from touched faces, in the order of their places behind the mesh's faces."""
+    extra_face: list[int]
+    """Face that each of those was split off from."""
+    face_vertex: np.ndarray
+    """Vertex at which each half-edge of the mesh starts, after the opening, shape (half_edge_count,)."""
+    half_edge_face: np.ndarray
+    """Face, after the opening, that walks each half-edge of the mesh, shape (half_edge_count,)."""
+    slits: list[tuple[int, list[int]]]
+    """Chords along which slits meet no edge of their face, and the vertices of each: at the chord's start, on the
+    positive side, at its end, on the negative side."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,17 +49,3 @@ class Opening:
     """The vertices that are new."""
     faces: OpenedFaces
     """What became of the mesh's faces."""
-
-
-def open_section(section: Section, numbering: Numbering, front: float) -> Opening:
-    """Open a section.
-
-    Args:
-        section: The section.
-        numbering: Its vertex ids.
-        front: Coordinate s up to which it is open [m].
-    """
-    region = SweptRegion(section, front, middles=np.flatnonzero(numbering.middle_plus >= 0))
-    vertices = CreatedVertices(section, numbering, region)
-    faces = split_segments(vertices) if section.mesh.dimension == 2 else walk_faces(vertices)
-    return Opening(section, region, vertices, faces)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from .created_vertices import CreatedVertices
-from .opened_faces import OpenedFaces
+from .opening import OpenedFaces
 
 
 def split_segments(created: CreatedVertices) -> OpenedFaces:

@@ -16,11 +16,14 @@ from ..geometry import PolygonMesh
 from .blade import BladePlane
 from .clearing import clear_front
 from .clipping import clipped
+from .created_vertices import CreatedVertices
 from .hinge import Hinge
+from .loop_walk import walk_faces
 from .numbering import Numbering
-from .opening import Opening, open_section
+from .opening import Opening
 from .polygons import section_of_polygons
 from .section import Section
+from .segment_split import split_segments
 from .segments import section_of_segments
 from .swept_region import SweptRegion
 
@@ -132,7 +135,11 @@ class Strip:
         Args:
             front: Coordinate s of the front [m].
         """
-        return open_section(self.section, self.numbering, front)
+        middles = np.flatnonzero(self.numbering.middle_plus >= 0)
+        region = SweptRegion(self.section, front, middles=middles)
+        vertices = CreatedVertices(self.section, self.numbering, region)
+        faces = split_segments(vertices) if self.section.mesh.dimension == 2 else walk_faces(vertices)
+        return Opening(self.section, region, vertices, faces)
 
     def swept(self, opening: Opening, since: float) -> SweptRegion:
         """What of an opening lies ahead of an earlier front.

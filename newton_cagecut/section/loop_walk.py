@@ -13,7 +13,7 @@ import numpy as np
 
 from ..geometry import bridge_holes, contains_point
 from .created_vertices import CreatedVertices
-from .opened_faces import OpenedFaces
+from .opening import OpenedFaces
 
 _SHUT, _OPEN, _PINNED = 0, 1, 2
 
