@@ -181,3 +181,33 @@ def test_shared_domain(cage, points):
     for edit in (edits[1], last):
         own.update(edit)
     assert_identical(snapshot(second), snapshot(own))
+
+
+def test_a_domain_has_its_options(cage, points):
+    """What was not said is the domain's; another choice than the domain's is refused, and so is one of none."""
+    domain = Domain(cage, quads="harmonic", distance="all", device="cpu")
+    shared = bake(domain, points)
+    assert_identical(snapshot(shared), snapshot(bake(cage, points, quads="harmonic", distance="all")))
+    assert_identical(snapshot(shared), snapshot(bake(domain, points, quads="harmonic", distance="all", device="cpu")))
+    for name, value in (("quads", "mean_value"), ("distance", "grid")):
+        with pytest.raises(ValueError, match=f"{name}='{value}', but the domain has"):
+            bake(domain, points, **{name: value})
+        with pytest.raises(ValueError, match=f"{name} must be one of"):
+            Domain(cage, device="cpu", **{name: "other"})
+
+
+def test_coordinates_behind_their_domain(cage, points):
+    """Coordinates that have missed an edit go on with the cage that their weights are for, until they recompute."""
+    domain = Domain(cage, device="cpu")
+    first, behind, own = bake(domain, points), bake(domain, points), bake(cage, points)
+    edit = middle_cut(cage).advance(to=0.5)
+    first.update(edit)
+    assert first.cage is domain.cage is edit.cage
+    assert behind.cage is cage
+    for one in (behind, own):
+        one.set_points([3], points[4:5])
+    assert_identical(snapshot(behind), snapshot(own))
+    np.testing.assert_array_equal(behind.weights_at(points[:4]), own.weights_at(points[:4]))
+    for one in (behind, own):
+        one.update(edit)
+    assert_identical(snapshot(behind), snapshot(own))
