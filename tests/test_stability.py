@@ -13,12 +13,13 @@ from PIL import Image
 
 from newton_cagecut import Material
 from newton_cagecut.__main__ import main
-from newton_cagecut.report.stability import measuring, rows_loads, rows_motion, rows_starts, rows_statics, sweep
+from newton_cagecut.report.stability import stability_run, sweep
 from newton_cagecut.report.stability.answers import bending_mode, flip_time, swing, tip_deflection
-from newton_cagecut.report.stability.bench import CUBE, Bench
 from newton_cagecut.report.stability.limits import LIMITS, limits_of
 from newton_cagecut.report.stability.outcome import Limits, Outcome, Row
+from newton_cagecut.report.stability.rows import loads, motion, starts, statics
 from newton_cagecut.report.stability.table import measure, rows
+from newton_cagecut.report.stability.workbench import CUBE, Workbench
 
 SCRIPT = """
 import newton_cagecut as cagecut
@@ -31,9 +32,9 @@ def build(builder):
 
 
 @pytest.fixture(scope="module")
-def bench() -> Bench:
+def bench() -> Workbench:
     """Bars, made once."""
-    return Bench(quick=True)
+    return Workbench(quick=True)
 
 
 def test_every_row_has_its_own_name_and_limits():
@@ -109,25 +110,25 @@ def test_a_trial_counts_limited_steps(bench):
 
 def test_rows_measure(bench):
     """A few rows of each kind come out finite and with an error where they promise one."""
-    spun = rows_motion.spin(bench, 1.0e4)
+    spun = motion.spin(bench, 1.0e4)
     assert spun.finite
     assert 0.0 <= spun.error < 1.0
     assert spun.momentum_drift < 1e-4
-    fallen = rows_motion.fall(bench)
+    fallen = motion.fall(bench)
     assert fallen.error < 0.02
-    bent = rows_statics.cantilever(bench, 0.0, 2)
+    bent = statics.cantilever(bench, 0.0, 2)
     assert bent.error < 1.0
     assert "of 0.04096" in bent.note
-    start = rows_starts.scaled(bench, "neo_hookean", (1.0, 1.0, 0.5))
+    start = starts.scaled(bench, "neo_hookean", (1.0, 1.0, 0.5))
     assert start.recovers
     assert start.energy_gain == 0.0
-    assert rows_loads.heavy(bench, 9.81, 1.0).finite
+    assert loads.heavy(bench, 9.81, 1.0).finite
 
 
 def test_a_row_that_breaks_fails_alone(bench):
     """What a row raises is its failure, and its text stands in the note."""
 
-    def broken(bench: Bench) -> Outcome:
+    def broken(bench: Workbench) -> Outcome:
         raise ValueError("no such bar")
 
     row = Row(name="broken", group="Motion", run=broken, limits=Limits(), quick=True)
@@ -145,9 +146,9 @@ def tiny(monkeypatch):
         return Row(name=name, group="Motion", run=lambda bench: outcome, limits=limits, quick=True)
 
     table = [row("good", 0.0, Limits(error=0.1)), row("bad", 0.2, Limits(error=0.1)), row("other", 1.0, None)]
-    monkeypatch.setattr(measuring, "rows", lambda **options: table)
+    monkeypatch.setattr(stability_run, "rows", lambda **options: table)
     axes = ((1.0e4,), (1.0e-3, 0.1))
-    monkeypatch.setattr(measuring, "axes", lambda **options: axes)
+    monkeypatch.setattr(stability_run, "axes", lambda **options: axes)
     monkeypatch.setattr(sweep, "axes", lambda **options: axes)
     monkeypatch.setattr(sweep, "_MOST_STEPS", 3)
 
@@ -176,7 +177,7 @@ def test_a_scenes_bodies_are_mapped(tiny, tmp_path):
     main(["stability", str(script), "--quick", "--out", str(tmp_path)])
     found = json.loads((tmp_path / "stability.json").read_text())
     assert found["settings"]["scene"] == str(script)
-    bench = Bench(quick=True, scene=measuring.build_of(str(script)))
+    bench = Workbench(quick=True, scene=stability_run.build_of(str(script)))
     trial = bench.subject(Material(young=1.0e4, model="stvk"))
     assert trial.solver.bodies[0].material.model == "stvk"
     np.testing.assert_allclose(np.ptp(trial.rest, axis=0), (1.0, 0.5, 0.5), rtol=1e-6)

@@ -53,6 +53,6 @@ def run(options: Namespace) -> int:
     """
     if find_spec("matplotlib") is None:
         raise ImportError("the picture needs matplotlib: pip install 'newton_cagecut[report]'")
-    from .stability.measuring import measure_all
+    from .stability.stability_run import measure_all
 
     return measure_all(options.scene, options.out, quick=options.quick)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .bench import Bench
+    from .workbench import Workbench
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +93,7 @@ class Row:
 
     name: str
     group: str
-    run: Callable[[Bench], Outcome]
+    run: Callable[[Workbench], Outcome]
     limits: Limits | None
     quick: bool
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .rows_starts import MODELS
+from .rows.starts import MODELS
 from .sweep import Cell, Map
 from .text import share, step_text
 
@@ -56,7 +56,7 @@ def _draw_panel(panel: object, found: Map, value: Callable[[Cell], float | None]
             panel.text(j, i, text, ha="center", va="center", fontsize=7)
     shown = np.where(np.isfinite(values), np.clip(values, norm.vmin, norm.vmax), np.nan)
     panel.set_facecolor("0.6")
-    image = panel.imshow(shown, cmap=colors, norm=norm, origin="lower", aspect="auto", alpha=0.75)
+    image = panel.imshow(shown, cmap=colors, norm=norm, origin="lower", aspect="auto", alpha=0.6)
     panel.set_xticks(range(len(found.time_steps)), [step_text(dt) for dt in found.time_steps])
     panel.set_yticks(range(len(found.young)), [f"1e{round(math.log10(young))}" for young in found.young])
     panel.set_xlabel("time step [s]")

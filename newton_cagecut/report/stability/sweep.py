@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...elastic import Material
-from .bench import Bench
 from .limits import limits_of
 from .outcome import Outcome
-from .rows_starts import MODELS
+from .rows.starts import MODELS
+from .workbench import Workbench
 
 _YOUNG = tuple(10.0**power for power in range(2, 11))
 _TIME_STEPS = (1.0e-5, 1.0e-4, 1.0e-3, 1.0 / 240.0, 1.0 / 60.0, 1.0 / 30.0, 1.0 / 10.0)
@@ -71,7 +71,7 @@ def axes(*, quick: bool) -> tuple[tuple[float, ...], tuple[float, ...]]:
     return (_YOUNG[::2], _TIME_STEPS[0::2]) if quick else (_YOUNG, _TIME_STEPS)
 
 
-def sweep(bench: Bench, model: str, advance: Callable[[], None]) -> Map:
+def sweep(bench: Workbench, model: str, advance: Callable[[], None]) -> Map:
     """Make the map of one material.
 
     Args:
@@ -93,7 +93,7 @@ def map_name(model: str) -> str:
     return f"map, {MODELS[model]}"
 
 
-def _cell(bench: Bench, model: str, young: float, dt: float) -> Cell:
+def _cell(bench: Workbench, model: str, young: float, dt: float) -> Cell:
     """200 steps or a second of a body that turns once a second and trembles."""
     trial = bench.subject(Material(young=young, model=model))
     arms = trial.positions - trial.center()

@@ -7,18 +7,18 @@ from __future__ import annotations
 
 import time
 
-from . import rows_cuts, rows_loads, rows_motion, rows_peers, rows_starts, rows_statics
-from .bench import Bench
 from .limits import limits_of
 from .outcome import Outcome, Result, Row
+from .rows import cuts, loads, motion, starts, statics, tetrahedra
+from .workbench import Workbench
 
 _GROUPS = {
-    "Motion": rows_motion.ROWS,
-    "Impossible starts": rows_starts.ROWS,
-    "Loads": rows_loads.ROWS,
-    "Cuts": rows_cuts.ROWS,
-    "Small deformations": rows_statics.ROWS,
-    "The same bodies as tetrahedra": rows_peers.ROWS,
+    "Motion": motion.ROWS,
+    "Impossible starts": starts.ROWS,
+    "Loads": loads.ROWS,
+    "Cuts": cuts.ROWS,
+    "Small deformations": statics.ROWS,
+    "The same bodies as tetrahedra": tetrahedra.ROWS,
 }
 _OF_ANY_SCENE = ("Impossible starts",)
 
@@ -38,7 +38,7 @@ def rows(*, quick: bool, scene: bool) -> list[Row]:
     ]
 
 
-def measure(row: Row, bench: Bench) -> Result:
+def measure(row: Row, bench: Workbench) -> Result:
     """Measure a row; what it raises is its failure.
 
     Args:

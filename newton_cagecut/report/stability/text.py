@@ -15,7 +15,7 @@ def share(value: float | None) -> str:
     if not math.isfinite(value):
         return "not finite" if math.isnan(value) else "infinite"
     percent = 100.0 * value
-    if abs(percent) < 1.0e-3:
+    if abs(percent) < 5.0e-3:
         return "0 %"
     return (
         f"{percent:.2g} %" if abs(percent) < 10.0 else f"{percent:.0f} %" if abs(percent) < 1e4 else f"{percent:.0e} %"

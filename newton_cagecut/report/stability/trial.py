@@ -23,6 +23,9 @@ _MOST_CHANGE = 1.0 - 1.0e-3
 _RECOVERED = 1.0e-3
 """Elastic energy that a body may keep when it has come back to its shape, of that of the start."""
 
+_NOTHING = 1.0e-6
+"""Energy of a start that has none but for rounding, of the highest seen."""
+
 
 class Trial:
     """Bodies of a model, one state of them, and what has been seen since the last :meth:`begin`.
@@ -203,7 +206,7 @@ class Trial:
         start, highest = self._start_energy, self._highest_energy
         gain = 0.0
         if self._highest_total > self._start_total:
-            gain = (self._highest_total - self._start_total) / (start if start > 0.01 * highest else highest)
+            gain = (self._highest_total - self._start_total) / (start if start > _NOTHING * highest else highest)
         drift = None
         if free and self.finite:
             mass = self.vertex_masses().sum()

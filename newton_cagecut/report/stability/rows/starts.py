@@ -11,10 +11,11 @@ from functools import partial
 
 import numpy as np
 
-from ...elastic import Material
-from .bench import Bench
-from .outcome import Outcome
-from .trial import Trial
+from ....elastic import Material
+from ..outcome import Outcome
+from ..text import share
+from ..trial import Trial
+from ..workbench import Workbench
 
 FRAME = 1.0 / 60.0
 MODELS = {"neo_hookean": "neo-Hookean", "stvk": "StVK"}
@@ -23,7 +24,7 @@ _NOISE = 1.0e-4
 """Noise on each start, of the size of the body: no symmetry holds it in an equilibrium."""
 
 
-def scaled(bench: Bench, model: str, scale: tuple[float, float, float], *, young: float = 1.0e5) -> Outcome:
+def scaled(bench: Workbench, model: str, scale: tuple[float, float, float], *, young: float = 1.0e5) -> Outcome:
     """Start with the body scaled about its middle."""
     trial = bench.subject(Material(young=young, damping=0.01, model=model))
     start = trial.positions
@@ -32,14 +33,14 @@ def scaled(bench: Bench, model: str, scale: tuple[float, float, float], *, young
     return _let_go(bench, trial, middle + (start - middle) * scale + noise)
 
 
-def random(bench: Bench, model: str) -> Outcome:
+def random(bench: Workbench, model: str) -> Outcome:
     """Start with every vertex anywhere in the body's box."""
     trial = bench.subject(Material(young=1.0e5, damping=0.01, model=model))
     low, high = trial.positions.min(axis=0), trial.positions.max(axis=0)
     return _let_go(bench, trial, np.random.default_rng(0).uniform(low, high, size=trial.positions.shape))
 
 
-def bad_time_step(bench: Bench, dt: float) -> Outcome:
+def bad_time_step(bench: Workbench, dt: float) -> Outcome:
     """A step of a length that is none: it is refused, or leaves the body where it was."""
     trial = bench.subject(Material(young=1.0e5))
     start = trial.positions
@@ -57,12 +58,12 @@ def bad_time_step(bench: Bench, dt: float) -> Outcome:
     return trial.outcome(finite=finite, energy_gain=None, error=change, against=_STILL, note=note)
 
 
-def _let_go(bench: Bench, trial: Trial, positions: np.ndarray) -> Outcome:
+def _let_go(bench: Workbench, trial: Trial, positions: np.ndarray) -> Outcome:
     """Two seconds from rest in these positions; held vertices stay where they are."""
     trial.place(np.where(trial.held[:, None], trial.positions, positions), np.zeros_like(positions))
     trial.run(120, FRAME)
     left = trial.elastic_left()
-    note = f"{100.0 * left:.2g} % of the elastic energy left" if math.isfinite(left) else ""
+    note = f"{share(left)} of the elastic energy left" if math.isfinite(left) else ""
     free = not trial.held.any() and bench.scene is None
     return trial.outcome(free=free, recovers=trial.recovered(), note=note)
 
@@ -80,7 +81,7 @@ _STARTS: tuple[tuple[str, Callable[..., Outcome], bool], ...] = (
     ("stretched tenfold, 1e+08 Pa", partial(scaled, scale=(10.0, 1.0, 1.0), young=1.0e8), False),
 )
 
-ROWS: tuple[tuple[str, Callable[[Bench], Outcome], bool], ...] = (
+ROWS: tuple[tuple[str, Callable[[Workbench], Outcome], bool], ...] = (
     *(
         (f"{text}, {name}", partial(run, model=model), quick)
         for name, run, quick in _STARTS

@@ -11,17 +11,17 @@ from functools import partial
 import numpy as np
 import warp as wp
 
-from ...elastic import Material
-from .bench import CUBE, Bench
-from .outcome import Outcome
-from .rows_starts import FRAME, MODELS
-from .trial import Trial
+from ....elastic import Material
+from ..outcome import Outcome
+from ..trial import Trial
+from ..workbench import CUBE, Workbench
+from .starts import FRAME, MODELS
 
 _HEIGHT = 0.3
 """Height of the lowest vertices above the ground before a drop [m]."""
 
 
-def drop(bench: Bench, model: str, speed: float) -> Outcome:
+def drop(bench: Workbench, model: str, speed: float) -> Outcome:
     """A cube thrown onto the ground: it bounces no higher than it came, and is a cube again."""
     material = Material(young=1.0e5, damping=0.01, model=model)
     trial = _above_ground(bench, material, _HEIGHT, speed)
@@ -36,7 +36,7 @@ def drop(bench: Bench, model: str, speed: float) -> Outcome:
     return trial.outcome(recovers=bool(whole), note=f"lowest cage vertex at {min(lowest):.3g} m")
 
 
-def heavy(bench: Bench, gravity: float, density: float, young: float = 1.0e5) -> Outcome:
+def heavy(bench: Workbench, gravity: float, density: float, young: float = 1.0e5) -> Outcome:
     """A clamped bar under its weight, 3 s: finite, and no energy beyond what gravity gives."""
     material = Material(young=young, density=density, damping=0.02)
     trial = bench.bar(material, gravity=(0.0, 0.0, -gravity), fixed=_clamped, key="clamped")
@@ -46,7 +46,7 @@ def heavy(bench: Bench, gravity: float, density: float, young: float = 1.0e5) ->
     return trial.outcome(note=note)
 
 
-def thrown_while_held(bench: Bench) -> Outcome:
+def thrown_while_held(bench: Workbench) -> Outcome:
     """A clamped bar is added with a velocity: its clamped end does not move."""
     trial = bench.bar(Material(young=1.0e5), fixed=_clamped, key="thrown", velocity=(0.0, 0.0, 1.0))
     trial.run(60, FRAME)
@@ -55,7 +55,7 @@ def thrown_while_held(bench: Bench) -> Outcome:
     return trial.outcome(energy_gain=None, error=moved, against="no motion", note=note)
 
 
-def rest(bench: Bench, steps: int) -> Outcome:
+def rest(bench: Workbench, steps: int) -> Outcome:
     """A bar lies on the ground, for many steps: it stays there, and at rest."""
     material = Material(young=1.0e5, damping=0.01)
     trial = _above_ground(bench, material, 0.0, 0.0)
@@ -70,7 +70,7 @@ def rest(bench: Bench, steps: int) -> Outcome:
     return trial.outcome(energy_gain=None, error=moved, against="no motion", step_count=steps, note=note)
 
 
-def _above_ground(bench: Bench, material: Material, height: float, speed: float) -> Trial:
+def _above_ground(bench: Workbench, material: Material, height: float, speed: float) -> Trial:
     """A cube above the ground that is thrown at it."""
     pose = wp.transform((0.0, 0.0, height + 0.5 * CUBE[2]), wp.quat_identity())
     placed = {"key": f"{height} m, {speed} m/s", "xform": pose, "velocity": (0.0, 0.0, -speed)}
@@ -81,7 +81,7 @@ def _clamped(vertices: np.ndarray) -> np.ndarray:
     return np.flatnonzero(vertices[:, 0] < 1.0e-6)
 
 
-ROWS: tuple[tuple[str, Callable[[Bench], Outcome], bool], ...] = (
+ROWS: tuple[tuple[str, Callable[[Workbench], Outcome], bool], ...] = (
     *(
         (f"drop at {speed:g} m/s, {text}", partial(drop, model=model, speed=speed), True)
         for speed in (1.0, 10.0, 100.0)

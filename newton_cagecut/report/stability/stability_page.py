@@ -79,6 +79,7 @@ class Page:
             body = [_cells(result, bold=False) for result in results]
             lines += [group, *table_lines(_HEAD, body), ""]
         for found in self.maps:
+            lines += [_verdict(found), ""]
             for title, body in _map_tables(found):
                 lines += [title, *table_lines(_map_head(found), body), ""]
         return "\n".join([*lines, self.summary()])
@@ -96,6 +97,7 @@ class Page:
         ]
         lines += ["", f"![Energy gain and angular momentum over stiffness and time step]({PICTURE})", ""]
         for found in self.maps:
+            lines += [f"{_verdict(found)}.", ""]
             for title, body in _map_tables(found):
                 lines += [f"### {title}", "", *markdown_lines(_map_head(found), body), ""]
         return "\n".join(lines)
@@ -158,7 +160,7 @@ def _cells(result: Result, *, bold: bool) -> list[str]:
 
 
 def _limit(name: str, limit: float) -> str:
-    return share(limit) if name in ("energy_gain", "error") else number(limit)
+    return share(limit) if name in ("energy_gain", "error") else f"{limit:g}"
 
 
 def _yes(value: bool | None) -> str:
@@ -167,6 +169,13 @@ def _yes(value: bool | None) -> str:
 
 def _count(value: int | None) -> str:
     return "n/a" if value is None else str(value)
+
+
+def _verdict(found: Map) -> str:
+    verdict = "FAIL" if found.failures() else "ok"
+    return (
+        f"{map_name(found.model)}: {verdict}, {len(found.failures())} of {len(found.cells)} places out of their limits"
+    )
 
 
 def _map_head(found: Map) -> list[str]:

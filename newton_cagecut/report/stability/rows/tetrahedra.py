@@ -13,11 +13,11 @@ import newton
 import numpy as np
 import warp as wp
 
-from ...elastic import Material
-from .answers import tip_deflection
-from .bench import BAR, CUBE, Bench
-from .outcome import Outcome
-from .rows_starts import FRAME
+from ....elastic import Material
+from ..answers import tip_deflection
+from ..outcome import Outcome
+from ..workbench import BAR, CUBE, Workbench
+from .starts import FRAME
 
 _ITERATIONS = 10
 """Iterations of Newton's solver in a step, its default."""
@@ -97,7 +97,7 @@ class Grid:
         )
 
 
-def spin(bench: Bench, young: float) -> Outcome:
+def spin(bench: Workbench, young: float) -> Outcome:
     """The spinning cube of the motion rows."""
     grid = Grid((4, 4, 4), CUBE, Material(young=young))
     rest = grid.positions
@@ -109,7 +109,7 @@ def spin(bench: Bench, young: float) -> Outcome:
     return grid.outcome(abs(kept - 1.0), "angular momentum at the start", f"{100.0 * kept:.1f} % kept")
 
 
-def cantilever(bench: Bench, poisson: float, iterations: int) -> Outcome:
+def cantilever(bench: Workbench, poisson: float, iterations: int) -> Outcome:
     """The bar of the statics rows, pushed at its tip for six seconds; the deflection is the mean of the last four."""
     material = Material(young=1.0e6, poisson=poisson)
     grid = Grid((10, 2, 2), BAR, material, clamped=True, iterations=iterations)
@@ -127,7 +127,7 @@ def cantilever(bench: Bench, poisson: float, iterations: int) -> Outcome:
     return grid.outcome(abs(ratio - 1.0), "Timoshenko", note)
 
 
-ROWS: tuple[tuple[str, Callable[[Bench], Outcome], bool], ...] = (
+ROWS: tuple[tuple[str, Callable[[Workbench], Outcome], bool], ...] = (
     *(
         (f"SolverVBD: spin, {young:.0e} Pa", partial(spin, young=young), young == 1.0e6)
         for young in (1.0e4, 1.0e6, 1.0e8)

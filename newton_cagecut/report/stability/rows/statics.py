@@ -11,12 +11,12 @@ from functools import partial
 
 import numpy as np
 
-from ...elastic import Material
-from ...section import Blade
-from .answers import bending_mode, tip_deflection
-from .bench import BAR, Bench
-from .outcome import Outcome
-from .trial import Trial
+from ....elastic import Material
+from ....section import Blade
+from ..answers import bending_mode, tip_deflection
+from ..outcome import Outcome
+from ..trial import Trial
+from ..workbench import BAR, Workbench
 
 YOUNG, DENSITY = 1.0e6, 1000.0
 _SLOW = 10.0
@@ -27,7 +27,7 @@ CRACK_OPENING = 0.78
 
 
 def cantilever(
-    bench: Bench, poisson: float, segments: int, *, size: tuple[float, float, float] = BAR, axis: int = 2
+    bench: Workbench, poisson: float, segments: int, *, size: tuple[float, float, float] = BAR, axis: int = 2
 ) -> Outcome:
     """The tip of a clamped bar under a small force across it."""
     material = Material(young=YOUNG, poisson=poisson)
@@ -39,7 +39,7 @@ def cantilever(
     return _against(trial, deflection, expected, "Timoshenko")
 
 
-def frequency(bench: Bench, bending: bool, segments: int) -> Outcome:
+def frequency(bench: Workbench, bending: bool, segments: int) -> Outcome:
     """A free bar in its first axial or bending mode, in steps of a hundredth of a period."""
     material = Material(young=YOUNG, poisson=0.3, density=DENSITY)
     trial = bench.bar(material, segments=segments, **_fine(segments))
@@ -63,7 +63,7 @@ def frequency(bench: Bench, bending: bool, segments: int) -> Outcome:
     return _against(trial, found, expected, "Timoshenko" if bending else "sqrt(E / rho) / 2 L", free=True)
 
 
-def edge_crack(bench: Bench, segments: int) -> Outcome:
+def edge_crack(bench: Workbench, segments: int) -> Outcome:
     """A bar cut half through in its middle, its ends pulled apart: how far the cut opens."""
     material = Material(young=YOUNG, poisson=0.3)
     trial = bench.bar(material, segments=segments, fixed=_ends, cuttable=True, walks=128, quadrature=300)
@@ -112,7 +112,7 @@ def _ends(vertices: np.ndarray) -> np.ndarray:
 
 _FLAT_BAR = (1.0, 0.1, 0.3)
 
-ROWS: tuple[tuple[str, Callable[[Bench], Outcome], bool], ...] = (
+ROWS: tuple[tuple[str, Callable[[Workbench], Outcome], bool], ...] = (
     *(
         (f"cantilever, 8 segments, Poisson {poisson}", partial(cantilever, poisson=poisson, segments=8), True)
         for poisson in (0.0, 0.3, 0.45, 0.49, 0.499)

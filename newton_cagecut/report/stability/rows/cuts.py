@@ -10,18 +10,18 @@ from functools import partial
 
 import numpy as np
 
-from ...elastic import Material
-from ...section import Blade
-from .bench import Bench
-from .outcome import Outcome
-from .rows_starts import FRAME, MODELS
-from .trial import Trial
+from ....elastic import Material
+from ....section import Blade
+from ..outcome import Outcome
+from ..trial import Trial
+from ..workbench import Workbench
+from .starts import FRAME, MODELS
 
 _STEPS = 10
 """Advances of a cut."""
 
 
-def stretched(bench: Bench, model: str, segments: int) -> Outcome:
+def stretched(bench: Workbench, model: str, segments: int) -> Outcome:
     """A bar stretched three times between clamps is cut through; the error is the energy that the cut puts in."""
     material = Material(young=1.0e5, damping=0.02, model=model)
     trial = bench.bar(material, segments=segments, fixed=_ends, cuttable=True, quadrature=300)
@@ -36,7 +36,7 @@ def stretched(bench: Bench, model: str, segments: int) -> Outcome:
     return trial.outcome(error=error, against="no energy from the cut", note=note)
 
 
-def spinning(bench: Bench) -> Outcome:
+def spinning(bench: Workbench) -> Outcome:
     """A spinning, flying bar is cut through: the cut changes neither momentum; the error is that of both."""
     trial = bench.bar(Material(young=1.0e5), segments=2, cuttable=True, quadrature=150)
     center = trial.center()
@@ -51,7 +51,7 @@ def spinning(bench: Bench) -> Outcome:
     return trial.outcome(free=True, error=float(max(change, spin_change)), against="momenta before", note=note)
 
 
-def falling(bench: Bench) -> Outcome:
+def falling(bench: Workbench) -> Outcome:
     """A falling bar is cut through while it falls: it goes on falling as it did."""
     trial = bench.bar(Material(young=1.0e5), segments=2, cuttable=True, quadrature=150, gravity=(0.0, 0.0, -9.81))
     trial.run(30, FRAME)
@@ -62,7 +62,7 @@ def falling(bench: Bench) -> Outcome:
     return trial.outcome(free=True, error=abs(speed / expected - 1.0), against="speed g t", note=f"{speed:.5g} m/s")
 
 
-def sliver(bench: Bench, model: str, thickness: float) -> Outcome:
+def sliver(bench: Workbench, model: str, thickness: float) -> Outcome:
     """A slice is cut off the end of a spinning bar; the error is that of its mass."""
     material = Material(young=1.0e5, model=model)
     trial = bench.bar(material, segments=1, cuttable=True, quadrature=80)
@@ -71,7 +71,7 @@ def sliver(bench: Bench, model: str, thickness: float) -> Outcome:
     return _with_mass(trial, "mass of the slice")
 
 
-def light_piece(bench: Bench, ratio: float) -> Outcome:
+def light_piece(bench: Workbench, ratio: float) -> Outcome:
     """A corner is cut off that has a tiny part of the bar's mass; the error is that of its mass."""
     trial = bench.bar(Material(young=1.0e5), segments=2, cuttable=True, quadrature=150)
     normal, edge = np.full(3, 3.0**-0.5), np.array([1.0, -1.0, 0.0]) * 2.0**-0.5
@@ -84,7 +84,7 @@ def light_piece(bench: Bench, ratio: float) -> Outcome:
     return _with_mass(trial, "mass of the corner")
 
 
-def tip_beside_edge(bench: Bench, model: str, distance: float) -> Outcome:
+def tip_beside_edge(bench: Workbench, model: str, distance: float) -> Outcome:
     """A cut ends just before it is through: nothing is thrown about by the vertices beside the edge."""
     material = Material(young=1.0e5, model=model)
     trial = bench.bar(material, segments=1, cuttable=True, quadrature=80)
@@ -126,7 +126,7 @@ def _ends(vertices: np.ndarray) -> np.ndarray:
     return np.flatnonzero((vertices[:, 0] < 1.0e-6) | (vertices[:, 0] > 1.0 - 1.0e-6))
 
 
-ROWS: tuple[tuple[str, Callable[[Bench], Outcome], bool], ...] = (
+ROWS: tuple[tuple[str, Callable[[Workbench], Outcome], bool], ...] = (
     *(
         (f"cut, stretched 3 times, {n} segments, {text}", partial(stretched, model=model, segments=n), n == 4)
         for n in (2, 4, 8)

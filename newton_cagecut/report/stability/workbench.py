@@ -23,7 +23,7 @@ _CONTACT = 1.0e6
 """Stiffness of the ground under a point [N/m]."""
 
 
-class Bench:
+class Workbench:
     """Makes the bodies of the rows.
 
     Args:

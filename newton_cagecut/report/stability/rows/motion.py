@@ -11,26 +11,26 @@ from functools import partial
 
 import numpy as np
 
-from ...elastic import Material
-from ...section import Blade
-from .answers import flip_time, swing
-from .bench import CUBE, Bench
-from .outcome import Outcome
-from .trial import Trial
+from ....elastic import Material
+from ....section import Blade
+from ..answers import flip_time, swing
+from ..outcome import Outcome
+from ..trial import Trial
+from ..workbench import CUBE, Workbench
 
 FRAME = 1.0 / 60.0
 _TURN = 2.0 * math.pi
 _KEPT = "angular momentum at the start"
 
 
-def spin(bench: Bench, young: float, rate: float = _TURN, dt: float = FRAME) -> Outcome:
+def spin(bench: Workbench, young: float, rate: float = _TURN, dt: float = FRAME) -> Outcome:
     """A free cube spins for a second; the error is the share of its angular momentum that is lost or won."""
     trial = bench.bar(Material(young=young), segments=1, size=CUBE)
     _spin(trial, (0.0, 0.0, rate))
     return _kept(trial, dt)
 
 
-def spin_apart(bench: Bench) -> Outcome:
+def spin_apart(bench: Workbench) -> Outcome:
     """A bar in two pieces, of which one spins fast and the other slowly; the error is the worse one's."""
     trial = bench.bar(Material(young=1.0e6), cuttable=True, quadrature=120)
     cut = trial.solver.begin_cut(0, Blade((0.5, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, 0.0, -1.0)))
@@ -48,7 +48,7 @@ def spin_apart(bench: Bench) -> Outcome:
     return trial.outcome(free=True, error=error, against=_KEPT, note=note)
 
 
-def draw_in(bench: Bench) -> Outcome:
+def draw_in(bench: Workbench) -> Outcome:
     """A spinning bar that was stretched by half draws in and turns faster: its angular momentum stays."""
     trial = bench.bar(Material(young=1.0e5), segments=2)
     center = trial.center()
@@ -57,7 +57,7 @@ def draw_in(bench: Bench) -> Outcome:
     return _kept(trial, FRAME)
 
 
-def tumble(bench: Bench) -> Outcome:
+def tumble(bench: Workbench) -> Outcome:
     """A box that spins about its middle axis flips over when the rigid box does."""
     trial = bench.bar(Material(young=1.0e7), segments=1, size=(0.5, 0.3, 0.2))
     rate = np.array([0.05, 5.0, 0.0])
@@ -79,7 +79,7 @@ def tumble(bench: Bench) -> Outcome:
     return trial.outcome(free=True, error=abs(found / expected - 1.0), against="rigid flip time", note=note)
 
 
-def pendulum(bench: Bench, young: float) -> Outcome:
+def pendulum(bench: Workbench, young: float) -> Outcome:
     """A bar hinged along an edge at its end swings down; the error is the worse one of time and speed at the bottom."""
     material = Material(young=young)
     trial = bench.bar(material, segments=1, gravity=(0.0, 0.0, -9.81), fixed=_upper_edge, key="hinge")
@@ -101,7 +101,7 @@ def pendulum(bench: Bench, young: float) -> Outcome:
     return trial.outcome(error=float(error), against="rigid pendulum", note=note)
 
 
-def fall(bench: Bench) -> Outcome:
+def fall(bench: Workbench) -> Outcome:
     """A bar falls for a second, against g t^2 / 2."""
     trial = bench.bar(Material(young=1.0e6), gravity=(0.0, 0.0, -9.81))
     start = trial.center()
@@ -143,7 +143,7 @@ def _crossing(times: list[float], values: list[float]) -> float:
     return times[-2] + share * (times[-1] - times[-2])
 
 
-ROWS: tuple[tuple[str, Callable[[Bench], Outcome], bool], ...] = (
+ROWS: tuple[tuple[str, Callable[[Workbench], Outcome], bool], ...] = (
     *((f"spin, {young:.0e} Pa", partial(spin, young=young), young < 1.0e9) for young in (1.0e4, 1.0e6, 1.0e8, 1.0e9)),
     ("spin, 1 rad/s, 1e+08 Pa", partial(spin, young=1.0e8, rate=1.0), False),
     ("spin, 10 rad/s, 1e+08 Pa", partial(spin, young=1.0e8, rate=10.0), False),
