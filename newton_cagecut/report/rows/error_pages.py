@@ -15,7 +15,7 @@ from ..page.chart import Chart, Line, Panel
 from ..page.markdown import Section, Table, seconds_text
 from .error import CORRECTIONS, KINDS
 from .error import NAME as ERROR
-from .error_curves import Curve, all_curves, walk_curve
+from .error_curves import Curve, all_curves, element_curve, walk_curve
 
 _TITLES = {"before": "before the cut", "during": "half way through the cut"}
 _Y_LABELS = {
@@ -30,8 +30,8 @@ _TEXT = (
     "gradients, relative to the gradients; of where a smooth motion takes it, relative to the cage's diameter. Times "
     "are for all points, from the cage to the weights, kernels compiled before. Half way through the cut, walks are "
     "updated by the last step of 3 % (filled) or all walked again (hollow, dashed), which gives the same weights bit "
-    "for bit; the finite elements are meshed and solved again. Errors near the grey band cannot be told from those of "
-    "the reference."
+    "for bit; the finite elements are meshed and solved again (hollow, dashed: the time without meshing). Errors near "
+    "the grey band cannot be told from those of the reference."
 )
 
 
@@ -128,12 +128,16 @@ def _chart(records: Sequence[Record], scene: str) -> Chart:
 def _panel(records: Sequence[Record], scene: str, stage: str, kind: str) -> Panel:
     lines = []
     for curve in all_curves(records, scene, stage, kind):
-        marker = "o" if curve.label.startswith("walks") else "s"
-        lines.append(Line(curve.label, curve.seconds.tolist(), curve.errors.tolist(), marker=marker))
+        lines.append(_line(curve, curve.label, marker="o" if curve.label.startswith("walks") else "s"))
     for correction in CORRECTIONS if stage == "during" else ():
         whole = walk_curve(records, scene, correction, stage, kind, seconds="whole_seconds")
-        if not whole.empty:
-            lines.append(Line(whole.label, whole.seconds.tolist(), whole.errors.tolist(), dashed=True))
+        lines.append(_line(whole, f"{whole.label}, all again", like=whole.label))
+    solve = element_curve(records, scene, 2, stage, kind, seconds="solve_seconds")
+    lines.append(_line(solve, f"{solve.label}, mesh given", like=solve.label, marker="s"))
     floors = [record.values[stage]["own"][kind] for record in chosen(records, "reference", scene)]
     floor = float(np.sqrt(floors[0])) if floors else None
-    return Panel(_TITLES[stage], "time [s]", _Y_LABELS[kind], lines, floor)
+    return Panel(_TITLES[stage], "time [s]", _Y_LABELS[kind], [line for line in lines if len(line.x)], floor)
+
+
+def _line(curve: Curve, label: str, **options: str) -> Line:
+    return Line(label, curve.seconds.tolist(), curve.errors.tolist(), **options)
