@@ -57,11 +57,11 @@ def _notes(records: Sequence[Record], scene: str) -> list[str]:
     notes = []
     for record in chosen(records, "reference", scene):
         found = record.values
-        checks = ", ".join(f"{check:.2f}" for stage in STAGES for check in found[stage]["check"])
+        checks = " and ".join(f"{check:.2f}" for check in found["check"])
         notes.append(
-            f"{found['points']} points in a cage of {found['faces']} faces and {found['vertices']} vertices. Squared "
-            f"difference of the reference from plain runs over what both their errors lead to expect, weights and "
-            f"gradients before, then during the cut: {checks} (1 but for chance)."
+            f"{found['points']} points in a cage that has {found['faces']} faces and {found['vertices']} vertices "
+            f"{_TITLES[record.parameters['stage']]}. Squared difference of the reference from plain runs over what "
+            f"both their errors lead to expect: {checks}, of weights and of gradients (1 but for chance)."
         )
     failed = {
         text
@@ -134,7 +134,7 @@ def _panel(records: Sequence[Record], scene: str, stage: str, kind: str) -> Pane
         lines.append(_line(whole, f"{whole.label}, all again", like=whole.label))
     solve = element_curve(records, scene, 2, stage, kind, seconds="solve_seconds")
     lines.append(_line(solve, f"{solve.label}, mesh given", like=solve.label, marker="s"))
-    floors = [record.values[stage]["own"][kind] for record in chosen(records, "reference", scene)]
+    floors = [record.values["own"][kind] for record in chosen(records, "reference", scene, stage=stage)]
     floor = float(np.sqrt(floors[0])) if floors else None
     return Panel(_TITLES[stage], "time [s]", _Y_LABELS[kind], [line for line in lines if len(line.x)], floor)
 
