@@ -15,7 +15,7 @@ from ..cage import Cage, CageEdit
 from .cache.domain import Domain, domain_of
 from .cache.domain_state import DomainState
 from .cache.further_points import weights_of
-from .cache.incremental import find_concerned, run_concerned
+from .cache.incremental import find_concerned, run_again, run_concerned
 from .cache.placement import Placement
 from .cache.snapshot import CoordinatesSnapshot
 from .cache.storage import load_cache, save_cache
@@ -213,44 +213,35 @@ class HarmonicCoordinates:
             after = self.domain.after(edit)
             weights = cache.weights.grown(edit.cage.vertex_count)
             regrouped = cache.regrouped(after, retired_walls=edit.retired_walls, pieces_changed=after.change.regrouped)
-        added = (
-            None if points is None else _placed(after, points, count=cache.point_count, capacity=cache.point_capacity)
-        )
+        added = None
+        if points is not None and len(points.indices):
+            added = _placed(after, points, count=cache.point_count, capacity=cache.point_capacity)
         concerned = None if edit.is_empty else find_concerned(cache, after, stats)
         with Journal.within(journal) as journal:
             self._take_over(after, weights, journal)
             cache.place(regrouped, journal)
             if concerned is not None:
                 run_concerned(cache, after, concerned, stats, journal)
-            if added is not None and len(added.indices):
+            if added is not None:
                 stats.seconds["new_points"] = self._run_placed(added, journal).total_seconds
         return stats
 
     def recompute(self, *, journal: Journal | None = None) -> UpdateStats:
         """Walk every walk again on the walls as they are: the paper's naive baseline.
 
+        Until it is done the walks are there twice, so that a failure leaves those that were.
+
         Args:
             journal: Journal of a larger edit that this one is a part of, and that can take it back.
         """
         cache, state = self._cache, self.domain.now
         require_vertex_room(state.cage.vertex_count, cache.vertex_capacity)
-        weights, removed = cache.weights.grown(state.cage.vertex_count), cache.removed_points
+        weights, stats = cache.weights.grown(state.cage.vertex_count), self._new_stats()
         regrouped = cache.regrouped(state, retired_walls=np.zeros(0, dtype=np.int64), pieces_changed=True)
-        records = cache.records and (cache.records.copied() if len(removed) else cache.records.fresh())
-        stats = self._new_stats()
         with Journal.within(journal) as journal:
             self._take_over(state, weights, journal)
-            cache.keep_points(journal)
-            journal.keep_attributes(cache, "records")
-            journal.keep(*weights.arrays.values())
             cache.place(regrouped, journal)
-            cache.records = records
-            stages = cache.stages(state, stats)
-            stats.rewalked = stats.walk_count
-            if len(removed):
-                stages.run_points(np.setdiff1d(np.arange(self.point_count), removed))
-            else:
-                stages.run_all()
+            run_again(cache, state, stats, journal)
         return stats
 
     def snapshot(self) -> CoordinatesSnapshot:
@@ -431,14 +422,12 @@ class HarmonicCoordinates:
 
     def _run_placed(self, placement: Placement, journal: Journal) -> UpdateStats:
         """Set points and walk for them."""
-        cache, indices = self._cache, placement.indices
-        work = cache.work_of(indices)
-        cache.keep_walks(work, journal)
-        cache.keep_weights(indices, journal)
-        cache.place(placement, journal)
+        self._cache.keep_walks(self._cache.work_of(placement.indices), journal)
+        self._cache.keep_weights(placement.indices, journal)
+        self._cache.place(placement, journal)
         stats = self._new_stats()
-        stats.rewalked = work.count
-        cache.stages(self._state, stats).run_points(indices)
+        stats.rewalked = len(placement.indices) * self.walks
+        self._cache.stages(self._state, stats).run_points(placement.indices)
         return stats
 
 
