@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import warp as wp
 
 from cage_shapes import box, prism, voxels
 from harmonic_shapes import (
@@ -13,11 +14,13 @@ from harmonic_shapes import (
     assert_unbiased,
     assert_within_errors,
     copies,
+    interior_points,
     points_inside,
     side_vertices,
 )
-from newton_cagecut.cage import Cage, Cut
+from newton_cagecut.cage import Cage, Cut, boundary_distances
 from newton_cagecut.harmonic import HarmonicCoordinates
+from newton_cagecut.harmonic.fit.boundary_fit import BoundaryFit
 from newton_cagecut.section import Blade
 from plane_reference import PlaneReference, plane_reference
 from plane_shapes import loops_of, square
@@ -91,6 +94,32 @@ def test_box_cut_part_of_the_way():
     assert_within_errors(copies(cage, points, 2048, 16, quads="harmonic")[0], exact)
 
 
+def fitted(cage: Cage, points: np.ndarray, *, quads: str = "harmonic", panel_size: float = 1.0) -> np.ndarray:
+    """Weights by the fit alone, of points of the first piece."""
+    fit = BoundaryFit(cage, quads=quads, panel_size=panel_size, device=wp.get_device("cpu"))
+    return fit.values(points, np.zeros(len(points), dtype=int))
+
+
+def test_fits_of_slits():
+    """Fits of a slit square have the published weights, and those of a slit box the exact ones, more so when finer."""
+    plane, loop = slit_square()
+    mirrored = np.array(PUBLISHED)[[1, 0, 6, 5, 4, 3, 2]]
+    found = fitted(plane, np.array([[0.25, 0.5], [0.75, 0.5]]))
+    np.testing.assert_allclose(found[:, loop], [PUBLISHED, mirrored], atol=1e-5)
+    cut = Cut(box(), Blade([0.5, 0.5, 0.5], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]))
+    cage = cut.advance(to=0.5).cage
+    points = interior_points(cage, 200, np.random.default_rng(0))
+    points = points[boundary_distances(cage, points) > 0.03]
+    exact = np.zeros((len(points), cage.vertex_count))
+    exact[:, _prism_order(cut, plane.vertices[loop])] = extruded(
+        PlaneReference(plane.vertices[loop]).weights(points[:, :2]), points[:, 2]
+    )
+    coarse, fine = (np.abs(fitted(cage, points, panel_size=size) - exact) for size in (1.0, 0.4))
+    assert np.sqrt(np.mean(coarse**2)) < 5e-4
+    assert np.sqrt(np.mean(fine**2)) < 1e-4
+    assert fine.max() < 5e-3
+
+
 def _prism_order(cut: Cut, corners: np.ndarray) -> np.ndarray:
     """Vertices of a cut box over the corners of its slit square, first of the bottom, then of the top."""
     cage, order = cut.cage, []
@@ -141,3 +170,12 @@ def test_finite_elements(half_cut_l, quads):
     plain = copies(cut.cage, points, 1024, 48, quads=quads, correction="none")[0]
     common = fine > 0.01  # others are met by too few walks for a standard error
     assert_unbiased(plain[:, common], fine[common], own_error=own_error[common])
+
+
+@pytest.mark.parametrize("quads", ["harmonic", "mean_value"])
+def test_fits_and_finite_elements(half_cut_l, quads):
+    """A fit of the same cage is as close to the finite elements as they are to the truth, or within 1e-3."""
+    cut, points, references = half_cut_l
+    coarse, fine = (reference.weights(quads=quads) for reference in references)
+    off = np.abs(fitted(cut.cage, points, quads=quads, panel_size=0.5) - fine)
+    assert (off < np.abs(fine - coarse) / 3.0 + 1e-3).all()
