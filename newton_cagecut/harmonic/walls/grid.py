@@ -80,14 +80,16 @@ class CandidateGrid:
         cell_count = len(blocks) * BLOCK_SIDE**3
         counts = wp.empty(cell_count, dtype=wp.int32, device=device)
         reaches = wp.empty(cell_count, dtype=Reach, device=device)
-        new = NewTriangles()
-        new.all, new.first, new.wall = walls.data, first_new, int(walls.rows["wall"][first_new])
-        new.blocks = wp.array(blocks, dtype=wp.vec3i, device=device)
-        launch_blocks(measure_new, cell_count, [new, self.cells, self._nearest, reaches, counts], device=device)
+        added = NewTriangles()
+        added.all, added.first, added.wall = walls.data, first_new, int(walls.rows["wall"][first_new])
+        added.blocks = wp.array(blocks, dtype=wp.vec3i, device=device)
+        launch_blocks(measure_new, cell_count, [added, self.cells, self._nearest, reaches, counts], device=device)
         wp.utils.array_scan(counts, counts, inclusive=True)
         cells = copied(self.cells, int(counts[-1:].numpy()[0]))
         grid._nearest = wp.clone(self._nearest)
-        launch_blocks(fill_merged, cell_count, [new, counts, self.cells, cells, reaches, grid._nearest], device=device)
+        launch_blocks(
+            fill_merged, cell_count, [added, counts, self.cells, cells, reaches, grid._nearest], device=device
+        )
         grid.cells = cells if cells.items.size <= _MOST_GROWTH * self._built_size else compacted(cells)
         return grid
 

@@ -46,38 +46,38 @@ class Reach:
 
 
 @wp.func
-def _is_candidate(new: NewTriangles, t: int, cells: GridCells, center: wp.vec3, reach: Reach) -> bool:
+def _is_candidate(added: NewTriangles, t: int, cells: GridCells, center: wp.vec3, reach: Reach) -> bool:
     """The rule at the head of the file, and for the new triangles' wall the same rule within its plane.
 
     The triangles of one wall are all as far from a point as their plane is, so the nearest of them is the one that is
     nearest within the plane. The pieces of a long cut would crowd the cells beside it otherwise.
     """
     diagonal = cells.diagonal
-    if center_distance(new.all, t, center) > reach.nearest + diagonal + MARGIN:
+    if center_distance(added.all, t, center) > reach.nearest + diagonal + MARGIN:
         return False
-    if new.all.rows[t].wall != new.wall:
+    if added.all.rows[t].wall != added.wall:
         return True
-    return _lateral_distance(new.all, t, center) <= reach.lateral + diagonal + _LATERAL
+    return _lateral_distance(added.all, t, center) <= reach.lateral + diagonal + _LATERAL
 
 
 @wp.func
-def _reach_of_new(new: NewTriangles, cells: GridCells, cell: int, center: wp.vec3, nearest: float) -> Reach:
+def _reach_of_new(added: NewTriangles, cells: GridCells, cell: int, center: wp.vec3, nearest: float) -> Reach:
     """Least distances with the new triangles; ``lateral`` is negative where none of them reaches the cell."""
     reach = Reach()
     reach.nearest = nearest
     reach.lateral = -1.0
     lateral = float(1.0e30)
     farthest = nearest + cells.diagonal + MARGIN
-    for t in range(new.first, new.all.count):
-        if wp.abs(plane_distance(new.all, t, center)) <= farthest + MARGIN:  # most cells are out of reach
-            distance = center_distance(new.all, t, center)
+    for t in range(added.first, added.all.count):
+        if wp.abs(plane_distance(added.all, t, center)) <= farthest + MARGIN:  # most cells are out of reach
+            distance = center_distance(added.all, t, center)
             if distance <= farthest:
                 reach.nearest = wp.min(reach.nearest, distance)
-                lateral = wp.min(lateral, _lateral_distance(new.all, t, center))
+                lateral = wp.min(lateral, _lateral_distance(added.all, t, center))
     if lateral < 1.0e30:
         for item in range(cells.first[cell], cells.last[cell]):
-            if new.all.rows[cells.items[item]].wall == new.wall:
-                lateral = wp.min(lateral, _lateral_distance(new.all, cells.items[item], center))
+            if added.all.rows[cells.items[item]].wall == added.wall:
+                lateral = wp.min(lateral, _lateral_distance(added.all, cells.items[item], center))
         reach.lateral = lateral
     return reach
 
@@ -99,7 +99,7 @@ def measure_new(
     offset: int,
     block: int,
     cell_count: int,
-    new: NewTriangles,
+    added: NewTriangles,
     cells: GridCells,
     nearest: wp.array[float],
     reaches: wp.array[Reach],
@@ -108,20 +108,20 @@ def measure_new(
     """What new triangles mean for the cells of some blocks: least distances, and lengths of the lists that change."""
     begin = (offset + wp.tid()) * block
     for number in range(begin, wp.min(begin + block, cell_count)):
-        cell = _cell_in_blocks(cells, new.blocks, number)
+        cell = _cell_in_blocks(cells, added.blocks, number)
         reach = Reach()
         reach.lateral = -1.0
         center = cell_center(cells, cell)
         if cell >= 0:
-            reach = _reach_of_new(new, cells, cell, center, nearest[cell])
+            reach = _reach_of_new(added, cells, cell, center, nearest[cell])
         reaches[number] = reach
         count = int(0)
         if reach.lateral >= 0.0:
             for item in range(cells.first[cell], cells.last[cell]):
-                if _is_candidate(new, cells.items[item], cells, center, reach):
+                if _is_candidate(added, cells.items[item], cells, center, reach):
                     count += 1
-            for t in range(new.first, new.all.count):
-                if _is_candidate(new, t, cells, center, reach):
+            for t in range(added.first, added.all.count):
+                if _is_candidate(added, t, cells, center, reach):
                     count += 1
         counts[number] = count
 
@@ -131,7 +131,7 @@ def fill_merged(
     offset: int,
     block: int,
     cell_count: int,
-    new: NewTriangles,
+    added: NewTriangles,
     ends: wp.array[wp.int32],
     old: GridCells,
     cells: GridCells,
@@ -143,7 +143,7 @@ def fill_merged(
     for number in range(begin, wp.min(begin + block, cell_count)):
         reach = reaches[number]
         if reach.lateral >= 0.0:
-            cell = _cell_in_blocks(cells, new.blocks, number)
+            cell = _cell_in_blocks(cells, added.blocks, number)
             center = cell_center(cells, cell)
             slot = old.items.shape[0]
             if number > 0:
@@ -151,13 +151,13 @@ def fill_merged(
             cells.first[cell] = slot
             for item in range(old.first[cell], old.last[cell]):
                 t = old.items[item]
-                if _is_candidate(new, t, cells, center, reach):
+                if _is_candidate(added, t, cells, center, reach):
                     cells.items[slot] = t
                     slot += 1
-            for t in range(new.first, new.all.count):
-                if _is_candidate(new, t, cells, center, reach):
+            for t in range(added.first, added.all.count):
+                if _is_candidate(added, t, cells, center, reach):
                     cells.items[slot] = t
                     slot += 1
             cells.last[cell] = slot
-            put_nearest_first(new.all, cells, cells.first[cell], slot, center)
+            put_nearest_first(added.all, cells, cells.first[cell], slot, center)
             nearest[cell] = reach.nearest
