@@ -38,13 +38,21 @@ def corners(axis: int, side: float, dimension: int = 3) -> np.ndarray:
     return np.flatnonzero(box_cage(dimension).vertices[:, axis] == side)
 
 
-def make_solver(*, gravity: float = 0.0, builder: newton.ModelBuilder | None = None, dimension: int = 3, **options):
+def make_solver(
+    *,
+    gravity: float = 0.0,
+    builder: newton.ModelBuilder | None = None,
+    dimension: int = 3,
+    surface: cagecut.Surface | None = None,
+    **options,
+):
     """Model, solver and two states of a ball in a box, or of a disk in a square that stands upright.
 
     Args:
         gravity: Gravity along z [m/s^2].
         builder: A builder with more in it.
         dimension: Dimension of the body.
+        surface: What is in the cage; the ball by default.
         options: Options of ``add_cage_body``.
     """
     builder = builder or newton.ModelBuilder(gravity=(0.0, 0.0, gravity))
@@ -52,7 +60,7 @@ def make_solver(*, gravity: float = 0.0, builder: newton.ModelBuilder | None = N
     defaults = {"walks": 32, "quadrature": 60, "material": cagecut.Material(young=1.0e4, damping=0.02)}
     if dimension == 2:
         defaults["xform"] = wp.transform((0.0, 0.0, 0.0), UPRIGHT)
-    cagecut.add_cage_body(builder, box_cage(dimension), ball(dimension), **{**defaults, **options})
+    cagecut.add_cage_body(builder, box_cage(dimension), surface or ball(dimension), **{**defaults, **options})
     model = builder.finalize(device="cpu")
     return model, cagecut.SolverCageCut(model), model.state(), model.state()
 
