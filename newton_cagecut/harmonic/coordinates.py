@@ -408,7 +408,7 @@ class HarmonicCoordinates:
             ValueError: A point lies outside the cage, or a key is of no wall.
         """
         own = self._cache.options
-        options = own if own.walks == 0 else WalkOptions(walks, own.seed, epsilon=own.epsilon)
+        options = own if own.correction == "fitted" else WalkOptions(walks, own.seed, epsilon=own.epsilon)
         points = checked_points(points, self.cage.dimension)
         count = len(points)
         placement = _placed(self._state, PointChange(np.arange(count), points, point_keys), capacity=count)
