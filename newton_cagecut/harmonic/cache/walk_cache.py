@@ -90,6 +90,17 @@ class WalkCache:
         return np.flatnonzero(self.keys == REMOVED)
 
     @property
+    def standard_errors(self) -> np.ndarray:
+        """Standard errors of the weights, shape (point_count, vertex_capacity); a copy.
+
+        Raises:
+            ValueError: The weights are not fitted, or have fewer than two walks.
+        """
+        if self.options.correction != "fitted" or self.options.walks < 2:
+            raise ValueError("errors: only correction='fitted' with two walks or more tells standard errors")
+        return self.weights.errors.numpy()[: self.point_count].copy()
+
+    @property
     def arrays(self) -> dict[str, wp.array]:
         """The arrays that edits write to, of points whose walks are kept, by name."""
         records = self.records
