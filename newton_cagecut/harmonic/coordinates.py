@@ -56,7 +56,7 @@ class HarmonicCoordinates:
             boundary fit, plus the mean of what it leaves over where walks land; gradients are the fit's alone.
         bounds: Bounding volume of a walk: "dop18", "dop26", "aabb" or "sphere". Smaller ones send more walks to be
             walked again; the results are identical.
-        distance: "grid" (candidates) or "all" (every wall): identical results. By default "grid", or what the domain has.
+        distance: "grid" (candidates) or "all" (every wall): identical results. By default "grid", or the domain's.
         quads: "mean_value" (paper, equation 4) or "harmonic" for convex quads of the cage. By default "mean_value", or
             what the domain has.
         epsilon: Distance at which a walk lands, relative to half of the longest side of the cage's bounding box.
