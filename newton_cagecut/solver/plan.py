@@ -57,7 +57,8 @@ def plan_of(body: SimulatedBody) -> list[PlanEntry]:
         ("gradients", body.quadrature_count > 0, _quadrature_reason(body, "quadrature points alone have them")),
         ("walk cache", body.definition.cuttable, _cache_reason(body)),
         ("walls and grid", True, "distance queries"),
-        ("nested walks", body.coordinates.domain.has_nested_faces, _faces_reason(body)),
+        ("fitted weights", _is_fitted(body), _fit_reason(body)),
+        ("nested walks", body.coordinates.walks > 0 and body.coordinates.domain.has_nested_faces, _faces_reason(body)),
         ("quadrature", body.quadrature_count > 0, _quadrature_reason(body, f"{body.quadrature_count} points")),
         ("elasticity", body.system is not None, _quadrature_reason(body, f"{body.definition.material.model}")),
         ("third dimension", not body.is_plane, _space_reason(body)),
@@ -127,11 +128,23 @@ def _feature(held: HeldArray) -> str:
         return "surface"
     if first != "coordinates":
         return "vertices"
+    if path & {"fit", "residuals", "known_faces"}:
+        return "fitted weights"
     if "records" in path:
         return "walk cache"
     if held.path[-1] == "gradients":
         return "gradients"
     return "walls and grid" if path & {"domain", "_state"} else "weights"
+
+
+def _is_fitted(body: SimulatedBody) -> bool:
+    """Whether the weights are those of a boundary fit."""
+    return body.definition.options.get("correction") == "fitted"
+
+
+def _fit_reason(body: SimulatedBody) -> str:
+    """Why there is a boundary fit, or none."""
+    return 'correction="fitted"' if _is_fitted(body) else "the weights are walked for"
 
 
 def _cache_reason(body: SimulatedBody) -> str:
@@ -155,6 +168,8 @@ def _faces_reason(body: SimulatedBody) -> str:
     """Why walks go on in faces, or do not."""
     if body.is_plane:
         return "all faces are segments"
+    if body.coordinates.walks == 0:
+        return "the weights are fitted, nothing is walked"
     if body.coordinates.domain.has_nested_faces:
         return "faces with slits or more than four sides"
     return "all faces are triangles or convex quads"
