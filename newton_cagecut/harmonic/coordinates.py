@@ -47,12 +47,13 @@ class HarmonicCoordinates:
     Args:
         cage: The cage, or a ``Domain`` that other coordinates hold already and that is to be shared.
         points: Rest positions inside the cage [m], shape (point_count, dimension).
-        walks: Walks a point. The standard error falls as the root of it.
+        walks: Walks a point. The standard error falls as the root of it. 0 with correction "fitted".
         seed: Seed of all walks. The same seed on the same walls gives the same weights, bit for bit.
         gradients: Whether to estimate the weights' gradients: for all points, or those of a mask, shape (point_count,).
         cuttable: Whether to keep the walk cache that updates need (by default 64 bytes a walk, 32 in the plane).
         device: Where to walk; Warp's current device by default, or the domain's.
-        correction: "harmonic" (control variates), "affine" (paper, equation 5) or "none" (plain means).
+        correction: "harmonic" (control variates), "affine" (paper, equation 5), "none" (plain means) or "fitted": no
+            walks, but a boundary fit of all coordinates, which each edit makes again.
         bounds: Bounding volume of a walk: "dop18", "dop26", "aabb" or "sphere". Smaller ones send more walks to be
             walked again; the results are identical.
         distance: "grid" (candidate grid) or "all" (every wall); the results are identical. By default "grid", or what
@@ -398,7 +399,7 @@ class HarmonicCoordinates:
         Args:
             points: Rest positions [m], shape (n, dimension).
             point_keys: Key 2 * wall + side for points on a wall, else -1, shape (n,).
-            walks: Walks a point.
+            walks: Walks a point; none where these coordinates are fitted.
 
         Returns:
             Weights, shape (n, cage.vertex_count), float32.
@@ -407,7 +408,7 @@ class HarmonicCoordinates:
             ValueError: A point lies outside the cage, or a key is of no wall.
         """
         own = self._cache.options
-        options = WalkOptions(walks, own.seed, epsilon=own.epsilon)
+        options = own if own.walks == 0 else WalkOptions(walks, own.seed, epsilon=own.epsilon)
         points = checked_points(points, self.cage.dimension)
         count = len(points)
         placement = _placed(self._state, PointChange(np.arange(count), points, point_keys), capacity=count)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 BOUNDS = ("dop18", "dop26", "aabb", "sphere")
-CORRECTIONS = ("harmonic", "affine", "none")
+CORRECTIONS = ("harmonic", "affine", "none", "fitted")
 DISTANCES = ("grid", "all")
 QUADS = ("mean_value", "harmonic")
 
@@ -35,8 +35,11 @@ class WalkOptions:
     def __post_init__(self) -> None:
         require_choice("correction", self.correction, CORRECTIONS)
         require_choice("bounds", self.bounds, BOUNDS)
+        fitted = self.correction == "fitted"
+        if fitted and self.walks != 0:
+            raise ValueError(f"correction='fitted' takes walks=0, not {self.walks!r}: the fit walks nowhere")
         for name, low, high in (
-            ("walks", 1, 1 << 24),
+            ("walks", 0 if fitted else 1, 1 << 24),
             ("seed", 0, (1 << 32) - 1),
             ("max_steps", 1, 1 << 16),
             ("degree", 1, 3),

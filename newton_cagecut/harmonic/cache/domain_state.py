@@ -5,13 +5,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import warp as wp
 
 from ...cage import Cage, CageEdit
 from ..faces.face_tables import FaceTables, build_face_tables
+from ..fit.boundary_fit import BoundaryFit
+from ..fit.face_values import FaceValues
 from ..launch import launch
 from ..walls.frame import UnitFrame
 from ..walls.grid import CandidateGrid
@@ -31,6 +34,7 @@ class DomainState:
         quads: "mean_value" or "harmonic": how convex quads interpolate.
         distance: "grid" or "all": how the nearest wall is found.
         change: What the edit that led here means for walks; None at first.
+        known_faces: Boundary functions of faces from the last fit of any of these states, which the next one can use.
     """
 
     cage: Cage
@@ -39,6 +43,7 @@ class DomainState:
     quads: str
     distance: str
     change: DomainChange | None = None
+    known_faces: dict[bytes, FaceValues] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -72,6 +77,11 @@ class DomainState:
     def device(self) -> wp.context.Device:
         """Where everything is."""
         return self.walls.device
+
+    @cached_property
+    def fit(self) -> BoundaryFit:
+        """The fit of the cage's coordinates, made when it is first asked for."""
+        return BoundaryFit(self.cage, quads=self.quads, device=self.device, known=self.known_faces)
 
     def pieces_of(self, points: np.ndarray) -> np.ndarray:
         """Piece of the cage that each rest position lies in; all 0 while there is one. Shape (n,)."""

@@ -48,6 +48,9 @@ def find_concerned(cache: WalkCache, after: DomainState, stats: UpdateStats) -> 
     walks, points, point_count = cache.options.walks, cache.points, cache.point_count
     walk_count, removed = point_count * walks, cache.removed_points
     touched = wp.zeros(point_count, dtype=wp.uint8, device=device)
+    if walks == 0:
+        nothing = cache.work(wp.empty(0, dtype=wp.int32, device=device))
+        return ConcernedWalks(nothing, nothing, nothing, touched)
     with stats.time("check", device):
         pieces = records.kind.bound_pieces(change.polygons, change.directions, device)
         marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
@@ -90,7 +93,9 @@ def run_concerned(
         stages.land(concerned.resume, part="resume")
     stages.land(concerned.on_face, part="on_face", touched=touched)
     again = touched.numpy() != 0
-    if cache.options.correction != "none":
+    if cache.options.correction == "fitted":
+        again[:] = True
+    elif cache.options.correction != "none":
         # An affine correction is spread over all vertices of a piece.
         again |= cache.weights.degrees.numpy()[: cache.point_count] == 0
     again[cache.removed_points] = False

@@ -13,6 +13,7 @@ import warp as wp
 
 from ..faces.land import land_walks
 from ..options import WalkOptions
+from ..resolve.fitted import resolve_fitted
 from ..resolve.point_weights import PointWeights
 from ..resolve.resolve import resolve_points
 from ..stats import UpdateStats
@@ -59,7 +60,7 @@ class Stages:
         walks, count = self.options.walks, self.point_count
         batch = count
         if self.records is None:
-            batch = min(count, max(1, _BATCH_WALKS // walks))
+            batch = min(count, max(1, _BATCH_WALKS // max(walks, 1)))
             self.records = unkept_records(self.state, self.options, batch * walks)
         for first in range(0, count, max(batch, 1)):
             size = min(batch, count - first)
@@ -113,6 +114,13 @@ class Stages:
         if not len(indices):
             return
         stats, walks = self.stats, self.options.walks
+        if self.options.correction == "fitted":
+            with stats.time("fit", self.state.device):
+                fit = self.state.fit
+            with stats.time("resolve", self.state.device):
+                resolve_fitted(indices, self.weights, self.points, fit, self.state.grid)
+                self._count_resolved(indices)
+            return
         with stats.time("resolve", self.state.device):
             resolve_points(
                 indices,
@@ -124,13 +132,16 @@ class Stages:
                 half_side=self.state.frame.half_side,
                 first_point=first_point,
             )
-            stats.resolved_points += len(indices)
-            stats.lowest_weight = float(self.weights.lowest.numpy()[: self.point_count].min())
+            self._count_resolved(indices)
             keys = self.records.landings.key
             if self.records.bounded:
                 stats.capped = count_capped(keys[: self.point_count * walks], int(CAPPED))
             else:
                 stats.capped += count_capped(keys[: len(indices) * walks], int(CAPPED))
+
+    def _count_resolved(self, indices: np.ndarray) -> None:
+        self.stats.resolved_points += len(indices)
+        self.stats.lowest_weight = float(self.weights.lowest.numpy()[: self.point_count].min())
 
 
 def unkept_records(state: DomainState, options: WalkOptions, count: int) -> WalkRecords:

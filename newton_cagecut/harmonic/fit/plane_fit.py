@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from .density_fit import ChargePanels, DensityFit, DipolePanels
+from .layers.density_fit import ChargePanels, DensityFit, DipolePanels
 
 _EXTENT = 0.25
 """Half the greatest extent of a polygon in the frame of its fit: single layers in the plane need one well below 1."""
@@ -69,7 +69,7 @@ class PlaneFit:
         rows, edge, share = np.flatnonzero(on_edge), edge[on_edge], share[on_edge]
         values[rows] = 0.0
         values[rows, self._columns[edge, 0]] = 1.0 - share
-        values[rows, self._columns[edge, 1]] = share
+        values[rows, self._columns[edge, 1]] += share
         return values
 
     def gradients(self, points: np.ndarray) -> np.ndarray:
