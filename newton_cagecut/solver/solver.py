@@ -23,7 +23,7 @@ from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
 from .plan import PlanEntry, plan_of
-from .progress import fraction_bar
+from .progress_bars import fraction_bar
 from .viewing import SurfaceViewer
 from .warm_up import warm_up
 

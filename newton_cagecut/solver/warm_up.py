@@ -17,7 +17,7 @@ import numpy as np
 
 from ..harmonic import warm_up_coordinates
 from .body.simulated_body import SimulatedBody
-from .progress import run_parts
+from .progress_bars import run_parts
 
 Step = Callable[[newton.State, newton.State, newton.Contacts | None], None]
 
