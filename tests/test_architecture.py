@@ -37,6 +37,7 @@ LEVELS = {
         ("resolve",),
         ("cache",),
         ("point_checks",),
+        ("placing",),
         ("coordinates",),
         ("coordinates_warm_up",),
         ("__init__",),

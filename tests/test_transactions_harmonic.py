@@ -189,6 +189,7 @@ def test_bad_points_stop_an_update():
         "without gaps": PointChange([POINTS + 1], inside),
         "point_capacity": PointChange(np.arange(POINTS, POINTS + 5), 5 * inside),
         "keys of the cage's walls": PointChange([1], inside, [99]),
+        "one index a point": PointChange([], inside),
     }
     for text, change in bad.items():
         with pytest.raises(ValueError, match=text):

@@ -15,6 +15,8 @@ from ...cage import Cage, CageEdit
 from ..faces.face_tables import FaceTables, build_face_tables
 from ..fit.boundary_fit import BoundaryFit
 from ..fit.face_values import FaceValues
+from ..fit.residual_sums import ResidualTable
+from ..fit.residuals import build_residuals
 from ..launch import launch
 from ..walls.frame import UnitFrame
 from ..walls.grid import CandidateGrid
@@ -82,6 +84,11 @@ class DomainState:
     def fit(self) -> BoundaryFit:
         """The fit of the cage's coordinates, made when it is first asked for."""
         return BoundaryFit(self.cage, quads=self.quads, device=self.device, known=self.known_faces)
+
+    @cached_property
+    def residuals(self) -> ResidualTable:
+        """What the fit leaves over on the faces, evaluated when it is first asked for."""
+        return build_residuals(self.fit, self.frame, self.device)
 
     def pieces_of(self, points: np.ndarray) -> np.ndarray:
         """Piece of the cage that each rest position lies in; all 0 while there is one. Shape (n,)."""

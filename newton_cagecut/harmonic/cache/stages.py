@@ -13,7 +13,7 @@ import warp as wp
 
 from ..faces.land import land_walks
 from ..options import WalkOptions
-from ..resolve.fitted import resolve_fitted
+from ..resolve.fitted import WalkedResiduals, resolve_fitted
 from ..resolve.point_weights import PointWeights
 from ..resolve.resolve import resolve_points
 from ..stats import UpdateStats
@@ -107,19 +107,24 @@ class Stages:
         change = self.state.change
         before = self.state.faces if change is None else change.faces_before
         with self.stats.time(part, self.state.device):
-            land_walks(work, self.records, self.points, self.state.faces, self.options, before=before, touched=touched)
+            land_walks(
+                work,
+                self.records,
+                self.points,
+                self.state.faces,
+                self.options,
+                before=before,
+                touched=touched,
+                nested=self.options.correction != "fitted",
+            )
 
     def resolve(self, indices: np.ndarray, *, first_point: int = 0) -> None:
         """Reduce the landings of points to weights; ``first_point`` is the one whose walks are the first records."""
         if not len(indices):
             return
-        stats, walks = self.stats, self.options.walks
+        stats = self.stats
         if self.options.correction == "fitted":
-            with stats.time("fit", self.state.device):
-                fit = self.state.fit
-            with stats.time("resolve", self.state.device):
-                resolve_fitted(indices, self.weights, self.points, fit, self.state.grid)
-                self._count_resolved(indices)
+            self._resolve_fitted(indices, first_point)
             return
         with stats.time("resolve", self.state.device):
             resolve_points(
@@ -133,15 +138,29 @@ class Stages:
                 first_point=first_point,
             )
             self._count_resolved(indices)
-            keys = self.records.landings.key
-            if self.records.bounded:
-                stats.capped = count_capped(keys[: self.point_count * walks], int(CAPPED))
-            else:
-                stats.capped += count_capped(keys[: len(indices) * walks], int(CAPPED))
+
+    def _resolve_fitted(self, indices: np.ndarray, first_point: int) -> None:
+        stats, state, walks = self.stats, self.state, self.options.walks
+        with stats.time("fit", state.device):
+            fit = state.fit
+            residuals = state.residuals if walks else None
+        with stats.time("resolve", state.device):
+            landed = None
+            if walks:
+                landed = WalkedResiduals(residuals, state.faces, self.records, walks, first_point)
+            resolve_fitted(indices, self.weights, self.points, fit, state.grid, landed)
+            self._count_resolved(indices)
 
     def _count_resolved(self, indices: np.ndarray) -> None:
         self.stats.resolved_points += len(indices)
         self.stats.lowest_weight = float(self.weights.lowest.numpy()[: self.point_count].min())
+        if self.options.walks == 0:
+            return
+        keys, walks = self.records.landings.key, self.options.walks
+        if self.records.bounded:
+            self.stats.capped = count_capped(keys[: self.point_count * walks], int(CAPPED))
+        else:
+            self.stats.capped += count_capped(keys[: len(indices) * walks], int(CAPPED))
 
 
 def unkept_records(state: DomainState, options: WalkOptions, count: int) -> WalkRecords:

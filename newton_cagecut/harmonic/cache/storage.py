@@ -131,6 +131,7 @@ def _used(name: str, cache: WalkCache, cage: Cage) -> tuple[slice, ...]:
     if name.startswith("landing "):
         return (walks,)
     shapes = {"bounds": (slice(None), walks), "weights": (points, vertices), "gradients": (slice(None), vertices)}
+    shapes["errors"] = (points, vertices)
     return shapes.get(name, (points,))
 
 

@@ -55,6 +55,7 @@ class BoundaryFit:
         self._planes = FacePlanes(cage, self.frame)
         self._values = self._face_values({} if known is None else known)
         panels = face_panels(cage, self.frame, self._planes, panel_size)
+        self._cells: dict[int, np.ndarray] = {}
         self._fits = [self._fit_of(piece, panels) for piece in range(cage.piece_count)]
 
     def _face_values(self, known: dict[bytes, FaceValues]) -> list[FaceValues]:
@@ -98,11 +99,13 @@ class BoundaryFit:
 
     def _dipoles_of(self, face: int, panels: FacePanels, loop: np.ndarray) -> tuple[np.ndarray, ...]:
         """Corners of a face's panels with known densities, items of each, and their columns and densities."""
+        own = panels.corners[(panels.face == face) & panels.valued]
         if len(loop) == 3:
             corners, density = self._planes.polygon(face)[None], np.eye(3)[None]
+            self._cells[face] = own
         else:
-            own = panels.corners[(panels.face == face) & panels.valued]
             corners, density = projected(self._values[face], self._planes.to_plane(face, own), _TOLERANCE)
+            self._cells[face] = self._planes.to_space(face, corners)
         items = np.swapaxes(density, 1, 2).reshape(-1, 3)
         counts = np.full(len(corners), len(loop))
         return self._planes.to_space(face, corners), counts, np.tile(loop, len(corners)), items
@@ -119,13 +122,45 @@ class BoundaryFit:
             Weights, shape (point_count, cage.vertex_count); those of vertices of other pieces are 0.
         """
         face = np.full(len(points), -1) if face is None else face
+        inside = np.where(face < 0, piece, -1)
+        out = self.values(points, inside) + self.boundary(points, face)
+        return make_exact(self._affine, self.frame.to_unit(points), inside, out)
+
+    def exact(self, points: np.ndarray, piece: np.ndarray, weights: np.ndarray) -> np.ndarray:
+        """Weights of points inside made exact: see ``weights``. Those of piece -1 stay as they are."""
+        return make_exact(self._affine, self.frame.to_unit(points), piece, weights)
+
+    def boundary(self, points: np.ndarray, face: np.ndarray) -> np.ndarray:
+        """Boundary functions at points of faces, 0 for those on face -1, shape (point_count, cage.vertex_count)."""
+        out = np.zeros((len(points), self.cage.vertex_count))
         unit = self.frame.to_unit(points)
-        out = self.values(points, np.where(face < 0, piece, -1))
         for number in np.unique(face[face >= 0]).tolist():
             own = np.flatnonzero(face == number)
+            found = self._on_face(number, unit[own])
             for k, column in enumerate(self.cage.faces[number]):
-                out[own, column] += self._on_face(number, unit[own])[:, k]
-        return make_exact(self._affine, unit, np.where(face < 0, piece, -1), out)
+                out[own, column] += found[:, k]
+        return out
+
+    def outward(self, face: np.ndarray) -> np.ndarray:
+        """Unit normals of faces, out of the body, shape (n, dimension)."""
+        vector = self.cage.mesh.face_area_vector
+        return (vector / np.sqrt((vector**2).sum(axis=1, keepdims=True)))[face]
+
+    def panels(self) -> tuple[np.ndarray, np.ndarray]:
+        """Panels of the faces on which the fit's densities are linear, for tables on them.
+
+        Returns:
+            Corners [m], shape (panel_count, dimension, dimension), and the face of each panel, ascending.
+        """
+        if self.cage.dimension == 2:
+            corners, face = zip(*(fit.panels() for fit in self._fits))
+            face = [np.flatnonzero(self.cage.face_piece == piece)[own] for piece, own in enumerate(face)]
+        else:
+            corners = [self._cells[face] for face in range(self.cage.face_count)]
+            face = [np.full(len(own), number) for number, own in enumerate(corners)]
+        corners, face = np.concatenate(corners), np.concatenate(face)
+        order = np.argsort(face, kind="stable")
+        return corners[order] * self.frame.half_side + self.frame.center, face[order]
 
     def slopes(self, points: np.ndarray, piece: np.ndarray, face: np.ndarray | None = None) -> np.ndarray:
         """Gradients of the weights [1/m] that keep rigid motions free, shape (point_count, vertex_count, dimension).
@@ -136,9 +171,8 @@ class BoundaryFit:
             face: See ``weights``; there the gradient is that a little inside.
         """
         if face is not None:
-            normal = np.array([self.cage.walls[wall].normal for wall in self.cage.face_wall])[face]
-            outward = normal * (1.0 - 2.0 * np.asarray(self.cage.face_side)[face])[:, None]
-            points = points - np.where(face >= 0, _INWARD * self.frame.half_side, 0.0)[:, None] * outward
+            inward = np.where(face >= 0, -_INWARD * self.frame.half_side, 0.0)
+            points = points + inward[:, None] * self.outward(face)
         slopes = self.gradients(points, piece) * self.frame.half_side
         return make_slopes_exact(self._affine, piece, slopes) / self.frame.half_side
 
