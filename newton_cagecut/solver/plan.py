@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from .held_arrays import HeldArray, held_arrays
 
 if TYPE_CHECKING:
-    from .edit_stamps import EditStamps
-    from .simulated_body import SimulatedBody
+    from .body.edit_stamps import EditStamps
+    from .body.simulated_body import SimulatedBody
 
 _USD = f"{__package__.split('.')[0]}.usd"
 
