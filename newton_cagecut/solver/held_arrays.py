@@ -31,15 +31,16 @@ class HeldArray(NamedTuple):
 
 
 def held_arrays(owner: object, *, without: tuple[object, ...] = ()) -> list[HeldArray]:
-    """The arrays that an object of this package holds, directly or by others; each memory once, views not.
+    """The arrays that an object of this package holds, directly or by others; each memory once, and whole.
 
     Where several paths lead to an array, it is the first, attributes in the order in which they were set.
 
     Args:
         owner: The object.
-        without: Objects that are not looked into.
+        without: Objects that are not looked into; views of their own arrays are not counted.
     """
-    seen, memories, found = {id(other) for other in without}, set(), []
+    seen, found = {id(other) for other in without}, []
+    memories = {array.ptr for other in without for array in vars(other).values() if isinstance(array, wp.array)}
     waiting: list[tuple[tuple[str, ...], object]] = [((), owner)]
     while waiting:
         path, value = waiting.pop()
@@ -47,6 +48,8 @@ def held_arrays(owner: object, *, without: tuple[object, ...] = ()) -> list[Held
             continue
         seen.add(id(value))
         if isinstance(value, wp.array):
+            while getattr(value, "_ref", None) is not None:  # a view
+                value = value._ref
             if value.capacity and value.deleter is not None and value.ptr not in memories:
                 memories.add(value.ptr)
                 found.append(HeldArray(path, value))
@@ -74,4 +77,5 @@ def _parts(value: object) -> Iterator[tuple[str, object]]:
 
 def _is_struct(value: object) -> bool:
     """Whether a value is an instance of a Warp struct."""
-    return type(value).__name__ == "StructInstance" and type(value).__module__.split(".")[0] == "warp"
+    kinds = type(value).__mro__
+    return any(kind.__name__ == "StructInstance" and kind.__module__.split(".")[0] == "warp" for kind in kinds)
