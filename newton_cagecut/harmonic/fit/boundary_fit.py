@@ -13,7 +13,7 @@ from ..walls.frame import UnitFrame
 from .exactness import affine_frames, make_exact, make_slopes_exact
 from .face_dipoles import FaceFunctions
 from .layers.density_fit import ChargePanels, DensityFit, DipolePanels
-from .panels.face_panels import FacePanels, FacePlanes, face_panels
+from .panels.face_panels import FacePanels, FacePlanes, affordable_panels
 from .plane_fit import PlaneFit
 
 _TOLERANCE = 3e-2
@@ -53,7 +53,7 @@ class BoundaryFit:
             return
         self._planes = FacePlanes(cage, self.frame)
         self._functions = self._face_functions({} if known is None else known)
-        panels = face_panels(cage, self.frame, self._planes, panel_size)
+        panels = affordable_panels(cage, self.frame, self._planes, panel_size)
         self._cells: dict[int, np.ndarray] = {}
         self._fits = [self._fit_of(piece, panels) for piece in range(cage.piece_count)]
 
