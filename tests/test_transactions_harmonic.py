@@ -137,10 +137,10 @@ def test_failed_edits_change_nothing(name, dimension):
     check_failures(name, dimension, {"vertex_capacity": 24} if name in ("cut", "recompute") else {})
 
 
-@pytest.mark.parametrize("name", ["cut through", "set"])
-def test_failed_edits_of_fitted_coordinates(name):
+@pytest.mark.parametrize(("name", "walks"), [("cut through", 0), ("set", 0), ("cut through", WALKS), ("set", WALKS)])
+def test_failed_edits_of_fitted_coordinates(name, walks):
     """Stopped while the fit is made, or at another Warp call, an edit leaves every byte as it was as well."""
-    check_failures(name, 2, {"correction": "fitted", "walks": 0}, stride=7)
+    check_failures(name, 2, {"correction": "fitted", "walks": walks}, stride=7)
 
 
 def check_failures(name: str, dimension: int, options: dict[str, object], *, stride: int = 1) -> None:
@@ -189,6 +189,7 @@ def test_bad_points_stop_an_update():
         "without gaps": PointChange([POINTS + 1], inside),
         "point_capacity": PointChange(np.arange(POINTS, POINTS + 5), 5 * inside),
         "keys of the cage's walls": PointChange([1], inside, [99]),
+        "one index a point": PointChange([], inside),
     }
     for text, change in bad.items():
         with pytest.raises(ValueError, match=text):

@@ -15,7 +15,7 @@ from ..cage import Cage, CageEdit
 from .cache.domain import Domain, domain_of
 from .cache.domain_state import DomainState
 from .cache.further_points import weights_of
-from .cache.incremental import find_concerned, run_concerned
+from .cache.incremental import find_concerned, run_again, run_concerned
 from .cache.placement import Placement
 from .cache.snapshot import CoordinatesSnapshot
 from .cache.storage import load_cache, save_cache
@@ -237,28 +237,19 @@ class HarmonicCoordinates:
     def recompute(self, *, journal: Journal | None = None) -> UpdateStats:
         """Walk every walk again on the walls as they are: the paper's naive baseline.
 
+        Until it is done the walks are there twice, so that a failure leaves those that were.
+
         Args:
             journal: Journal of a larger edit that this one is a part of, and that can take it back.
         """
         cache, state = self._cache, self.domain.now
         require_vertex_room(state.cage.vertex_count, cache.vertex_capacity)
-        weights, removed = cache.weights.grown(state.cage.vertex_count), cache.removed_points
+        weights, stats = cache.weights.grown(state.cage.vertex_count), self._new_stats()
         regrouped = cache.regrouped(state, retired_walls=np.zeros(0, dtype=np.int64), pieces_changed=True)
-        records = cache.records and (cache.records.copied() if len(removed) else cache.records.fresh())
-        stats = self._new_stats()
         with Journal.within(journal) as journal:
             self._take_over(state, weights, journal)
-            cache.keep_points(journal)
-            journal.keep_attributes(cache, "records")
-            journal.keep(*weights.arrays.values())
             cache.place(regrouped, journal)
-            cache.records = records
-            stages = cache.stages(state, stats)
-            stats.rewalked = stats.walk_count
-            if len(removed):
-                stages.run_points(np.setdiff1d(np.arange(self.point_count), removed))
-            else:
-                stages.run_all()
+            run_again(cache, state, stats, journal)
         return stats
 
     def snapshot(self) -> CoordinatesSnapshot:
@@ -439,12 +430,10 @@ class HarmonicCoordinates:
 
     def _run_placed(self, placement: Placement, journal: Journal) -> UpdateStats:
         """Set points and walk for them."""
-        cache, indices = self._cache, placement.indices
-        work = cache.work_of(indices)
-        cache.keep_walks(work, journal)
-        cache.keep_weights(indices, journal)
-        cache.place(placement, journal)
+        self._cache.keep_walks(self._cache.work_of(placement.indices), journal)
+        self._cache.keep_weights(placement.indices, journal)
+        self._cache.place(placement, journal)
         stats = self._new_stats()
-        stats.rewalked = work.count
-        cache.stages(self._state, stats).run_points(indices)
+        stats.rewalked = len(placement.indices) * self.walks
+        self._cache.stages(self._state, stats).run_points(placement.indices)
         return stats

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from .simulated_body import SimulatedBody
+    from .body.simulated_body import SimulatedBody
 
 
 class PlanEntry(NamedTuple):

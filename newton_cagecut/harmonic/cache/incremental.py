@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The incremental update: only what an edit concerns is walked, evaluated and resolved again (paper, section 5.2)."""
+"""Updates: only what an edit concerns is walked, evaluated and resolved again (paper, section 5.2), or everything."""
 
 from __future__ import annotations
 
@@ -102,3 +102,26 @@ def run_concerned(
     indices = np.flatnonzero(again)
     cache.keep_weights(indices, journal)
     stages.resolve(indices)
+
+
+def run_again(cache: WalkCache, state: DomainState, stats: UpdateStats, journal: Journal) -> None:
+    """Walk for all points that were not removed.
+
+    Args:
+        cache: Points, whose walks may be kept.
+        state: Walls and faces.
+        stats: Where counts and times are added.
+        journal: Where all that is overwritten is kept before.
+    """
+    removed, records = cache.removed_points, cache.records
+    cache.keep_points(journal)
+    journal.keep_attributes(cache, "records")
+    journal.keep(*cache.weights.arrays.values())
+    if records is not None:
+        cache.records = records.copied() if len(removed) else records.fresh()
+    stages = cache.stages(state, stats)
+    stats.rewalked = stats.walk_count
+    if len(removed):
+        stages.run_points(np.setdiff1d(np.arange(cache.point_count), removed))
+    else:
+        stages.run_all()

@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..cage import Cage
-from ..elastic import sample_quadrature
+from ...cage import Cage
+from ...elastic import sample_quadrature
 
 SPARE_COUNT = 64
 """Spare points that a body which can be cut reserves."""
