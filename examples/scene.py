@@ -15,7 +15,7 @@ import warp as wp
 from examples.cutting import CutSchedule, PlannedCut
 from examples.options import CPU_WALKS, add_options
 from examples.picture import Camera, Color
-from examples.progress import fraction_bar, frame_bar
+from examples.progress import frame_bar
 from examples.recording import Recording, StaticMesh
 from examples.timings import Timings
 from newton_cagecut import SolverCageCut
@@ -50,8 +50,8 @@ class CutScene:
         builder.add_ground_plane()
         self.recording = Recording(self, usd=args.usd, picture=args.picture, picture_frame=args.picture_frame)
         self.model = builder.finalize()
-        with fraction_bar("weights") as progress:
-            self.solver = SolverCageCut(self.model, progress=progress)
+        self.solver = SolverCageCut(self.model)
+        self.solver.warm_up()
         self.state_0, self.state_1 = self.model.state(), self.model.state()
         self.control = self.model.control()
         self.pipeline = newton.CollisionPipeline(self.model)

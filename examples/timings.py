@@ -14,9 +14,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from examples.cutting import PlannedCut
-from newton_cagecut import Cut, CutReport, HarmonicCoordinates, SolverCageCut
+from newton_cagecut import CutReport, HarmonicCoordinates, SolverCageCut
 from newton_cagecut.report.page.markdown import table_lines
-from newton_cagecut.solver import CageBody
 
 RECOMPUTE_EVERY = 8  # steps of the first cut
 UPDATE_PARTS = {
@@ -72,7 +71,6 @@ class Timings:
         self._cuts = [CutTimes(cut.name) for cut in plan]
         self._recompute_seconds: list[float] = []
         self._simulation_steps, self._simulation_seconds = 0, 0.0
-        compile_kernels(solver.body(plan[0].body), plan[0])
 
     def add_cut_step(self, number: int, report: CutReport) -> None:
         """Add a step of a cut; sometimes measure the full recompute after it.
@@ -162,20 +160,3 @@ class Timings:
                 f"walk cache        {byte_count / walks:8.1f} bytes a walk, {byte_count / 1e6:.0f} MB reserved"
             )
         return lines
-
-
-def compile_kernels(body: CageBody, planned: PlannedCut) -> None:
-    """Run all kernels of an update on a few points of a body, so that none is compiled while the clock runs.
-
-    Args:
-        body: The body; it does not change.
-        planned: A cut of it.
-    """
-    points = np.asarray(body.surface.points[:8])
-    coordinates = HarmonicCoordinates(body.cage, points, 8, gradients=np.arange(8) < 4, device=body.device)
-    cut = Cut(body.cage, planned.blade)
-    for fraction in (0.1, 0.3, 0.5):
-        edit = cut.advance(to=fraction * cut.length)
-        coordinates.boundary_weights(edit.cage.vertices[:1], np.asarray(body.cage.face_key[:1]), walks=8)
-        coordinates.update(edit)
-        coordinates.set_points(np.arange(1), points[:1])

@@ -18,7 +18,7 @@ KNOWN_ROOMS = {
     "geometry": (),
     "section": ("geometry",),
     "cage": ("geometry", "section"),
-    "harmonic": ("geometry", "cage"),
+    "harmonic": ("geometry", "section", "cage"),
     "surface": ("geometry", "section", "cage", "harmonic"),
     "elastic": ("geometry", "cage", "harmonic"),
     "usd": ("geometry", "cage", "surface"),
@@ -37,7 +37,9 @@ LEVELS = {
         ("resolve",),
         ("cache",),
         ("point_checks",),
+        ("placing",),
         ("coordinates",),
+        ("coordinates_warm_up",),
         ("__init__",),
     ),
 }

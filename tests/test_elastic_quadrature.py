@@ -17,7 +17,7 @@ from newton_cagecut.cage import boundary_distances
 from newton_cagecut.elastic import sample_quadrature
 from newton_cagecut.elastic.quadrature.dense import dense_inside
 from newton_cagecut.geometry import simplex_distances
-from newton_cagecut.solver.body_quadrature import BodyQuadrature
+from newton_cagecut.solver.body.body_quadrature import BodyQuadrature
 from plane_shapes import PLANES, square
 
 QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])

@@ -8,8 +8,13 @@ import numpy as np
 import pytest
 import warp as wp
 
-from newton_cagecut.harmonic.fit.segment_layers import Segment, make_segments, segment_layers, segment_slopes
-from newton_cagecut.harmonic.fit.triangle_layers import Triangle, make_triangles, triangle_layers, triangle_slopes
+from newton_cagecut.harmonic.fit.layers.segment_layers import Segment, make_segments, segment_layers, segment_slopes
+from newton_cagecut.harmonic.fit.layers.triangle_layers import (
+    Triangle,
+    make_triangles,
+    triangle_layers,
+    triangle_slopes,
+)
 
 KINDS = {
     2: (Segment, wp.vec2d, wp.mat22d, segment_layers, segment_slopes, make_segments),

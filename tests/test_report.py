@@ -33,7 +33,7 @@ TINY = Effort(
     reference_runs=2,
     reference_walks=128,
     row_walks=16,
-    mesh_sizes=(1.0,),
+    cell_counts=(50,),
     table_walks=4,
     face_counts=(50, 100),
     point_counts=(8, 16),
@@ -113,8 +113,8 @@ def test_stopped_report_has_a_page(tmp_path, monkeypatch, capsys):
 
     monkeypatch.setattr("newton_cagecut.report.rows.error_row.measure_error", stop)
     assert measure_all([small_scene()], TINY, wp.get_device("cpu"), tmp_path) == STOPPED
-    assert "stopped: 1 of" in capsys.readouterr().err
-    assert "from 1 measurements" in (tmp_path / "report.md").read_text()
+    assert "stopped: 2 of" in capsys.readouterr().err
+    assert "from 2 measurements" in (tmp_path / "report.md").read_text()
 
 
 def test_page_is_made_from_the_file_alone(report, tmp_path):

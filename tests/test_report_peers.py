@@ -34,11 +34,11 @@ def test_tetrahedron_is_exact(order):
     case = tetrahedron(20)
     has_gradient = np.arange(20) < 5
     weights, gradients, values = element_weights(
-        (case.cage, case.cage), [], NOTHING, case.points, has_gradient, order=order, size=0.5
+        (case.cage, case.cage), [], NOTHING, case.points, has_gradient, order=order, cells=20
     )
     np.testing.assert_allclose(weights, case.weights, atol=1e-9)
     np.testing.assert_allclose(np.einsum("nvi,vj->nij", gradients, case.cage.vertices), [np.eye(3)] * 5, atol=1e-8)
-    assert 0.0 < values["mesh_seconds"] < values["seconds"]
+    assert 0.0 < values["solve_seconds"] < values["seconds"]
 
 
 def test_slit_square_comes_near_the_known_weights():
@@ -48,7 +48,7 @@ def test_slit_square_comes_near_the_known_weights():
     edit = cut.advance(to=0.5)
     point = np.array([[0.25, 0.5]])
     errors = []
-    for size in (0.3, 0.1):
+    for cells in (40, 400):
         weights, _, _ = element_weights(
             (cage, edit.cage),
             edit.swept,
@@ -56,7 +56,7 @@ def test_slit_square_comes_near_the_known_weights():
             point,
             np.array([False]),
             order=2,
-            size=size,
+            cells=cells,
         )
         known = [np.abs(edit.cage.vertices - place).max(axis=1).argmin() for place in SLIT]
         errors.append(np.abs(weights[0, known] - list(SLIT.values())).max())
@@ -72,7 +72,7 @@ def test_cut_box_agrees_with_walks():
     front = np.array([[0.43, 0.0, 0.2], [0.43, 0.7, 0.2]])
     has_gradient = np.zeros(24, dtype=bool)
     weights, _, _ = element_weights(
-        (case.cage, edit.cage), edit.swept, front, case.points, has_gradient, order=2, size=0.3
+        (case.cage, edit.cage), edit.swept, front, case.points, has_gradient, order=2, cells=300
     )
     np.testing.assert_allclose(weights @ edit.cage.vertices, case.points, atol=1e-6)
     reference = long_walks(edit.cage, case.points, has_gradient | True, runs=2, walks=2048, device=wp.get_device("cpu"))
@@ -87,7 +87,7 @@ def test_mesh_is_open_along_the_cut():
     case = box(1)
     cut = Cut(case.cage, Blade((0.43, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, 0.0, -1.0)))
     edit = cut.advance(to=0.3)
-    nodes, simplices = fill(case.cage, edit.swept, np.array([[0.43, 0.0, 0.2], [0.43, 0.7, 0.2]]), 0.5)
+    nodes, simplices = fill(case.cage, edit.swept, np.array([[0.43, 0.0, 0.2], [0.43, 0.7, 0.2]]), 60)
     corner = nodes[simplices]
     volumes = np.abs(np.linalg.det(corner[:, 1:] - corner[:, :1])) / 6.0
     assert volumes.sum() == pytest.approx(case.cage.volume, rel=1e-6)
@@ -146,6 +146,6 @@ def test_plane_cage_with_a_hole_is_filled():
     cage = Cage(
         np.array(outer + hole), [(k, (k + 1) % 4) for k in range(4)] + [(4 + k, 4 + (k + 1) % 4) for k in range(4)]
     )
-    nodes, simplices = fill(cage, [], np.zeros((0, 2)), 0.4)
+    nodes, simplices = fill(cage, [], np.zeros((0, 2)), 20)
     edges = nodes[simplices][:, 1:] - nodes[simplices][:, :1]
     assert np.abs(np.linalg.det(edges)).sum() / 2.0 == pytest.approx(0.91, rel=1e-9)

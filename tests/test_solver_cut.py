@@ -196,6 +196,20 @@ def test_scene_pays_only_for_what_it_uses():
         solver.begin_cut(0, slanted_blade())
 
 
+@both_dimensions
+def test_body_with_fitted_weights(dimension: int):
+    """Without any walk a body is cut, and stays at rest: the weights' gradients leave no strain there."""
+    _, solver, *states = make_solver(dimension=dimension, walks=0, correction="fitted", quads="harmonic")
+    plan = {entry.feature: entry for entry in solver.plan()}
+    assert plan["walk cache"].byte_count == 0
+    assert not plan["nested walks"].on
+    report = solver.advance_cut(solver.begin_cut(0, slanted_blade(dimension)), 0.4, states=states)
+    assert report.stats.walk_count == 0
+    before = vertex_rows(solver, states[0])
+    states = run(solver, states, 3)
+    np.testing.assert_allclose(vertex_rows(solver, states[0]), before, atol=1e-5)
+
+
 def test_keyframed_cage_moves_the_surface():
     """Without quadrature the cage's particles are keyframes that the surface follows."""
     _, solver, state, other = make_solver(quadrature=0)

@@ -6,6 +6,7 @@
 from .cache.domain import Domain
 from .cache.snapshot import CoordinatesSnapshot
 from .coordinates import HarmonicCoordinates
+from .coordinates_warm_up import warm_up_coordinates
 from .journal import Journal
 from .options import check_options
 from .point_change import PointChange
@@ -19,4 +20,5 @@ __all__ = [
     "PointChange",
     "UpdateStats",
     "check_options",
+    "warm_up_coordinates",
 ]

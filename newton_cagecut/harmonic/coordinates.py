@@ -15,16 +15,16 @@ from ..cage import Cage, CageEdit
 from .cache.domain import Domain, domain_of
 from .cache.domain_state import DomainState
 from .cache.further_points import weights_of
-from .cache.incremental import find_concerned, run_concerned
+from .cache.incremental import find_concerned, run_again, run_concerned
 from .cache.placement import Placement
 from .cache.snapshot import CoordinatesSnapshot
 from .cache.storage import load_cache, save_cache
 from .cache.walk_cache import WalkCache
 from .journal import Journal
 from .options import WalkOptions
+from .placing import placed
 from .point_change import PointChange
 from .point_checks import (
-    checked_change,
     checked_indices,
     checked_keys,
     checked_points,
@@ -47,16 +47,16 @@ class HarmonicCoordinates:
     Args:
         cage: The cage, or a ``Domain`` that other coordinates hold already and that is to be shared.
         points: Rest positions inside the cage [m], shape (point_count, dimension).
-        walks: Walks a point. The standard error falls as the root of it.
+        walks: Walks a point. The standard error falls as the root of it. Fitted weights need none.
         seed: Seed of all walks. The same seed on the same walls gives the same weights, bit for bit.
         gradients: Whether to estimate the weights' gradients: for all points, or those of a mask, shape (point_count,).
         cuttable: Whether to keep the walk cache that updates need (by default 64 bytes a walk, 32 in the plane).
         device: Where to walk; Warp's current device by default, or the domain's.
-        correction: "harmonic" (control variates), "affine" (paper, equation 5) or "none" (plain means).
+        correction: "harmonic" (control variates), "affine" (paper, equation 5), "none" (plain means) or "fitted": a
+            boundary fit, plus the mean of what it leaves over where walks land; gradients are the fit's alone.
         bounds: Bounding volume of a walk: "dop18", "dop26", "aabb" or "sphere". Smaller ones send more walks to be
             walked again; the results are identical.
-        distance: "grid" (candidate grid) or "all" (every wall); the results are identical. By default "grid", or what
-            the domain has.
+        distance: "grid" (candidates) or "all" (every wall): identical results. By default "grid", or the domain's.
         quads: "mean_value" (paper, equation 4) or "harmonic" for convex quads of the cage. By default "mean_value", or
             what the domain has.
         epsilon: Distance at which a walk lands, relative to half of the longest side of the cage's bounding box.
@@ -99,7 +99,7 @@ class HarmonicCoordinates:
         self._state = state = self.domain.now
         points = checked_points(points, state.cage.dimension)
         count = len(points)
-        placement = _placed(state, PointChange(np.arange(count), points, point_keys), capacity=count)
+        placement = placed(state, PointChange(np.arange(count), points, point_keys), capacity=count)
         require_vertex_room(state.cage.vertex_count, vertex_capacity)
         self._cache = WalkCache(
             state,
@@ -166,6 +166,15 @@ class HarmonicCoordinates:
         return self._cache.weights.lowest.numpy()[: self.point_count].copy()
 
     @property
+    def errors(self) -> np.ndarray:
+        """Standard errors of fitted weights by their walks, shape (point_count, cage.vertex_count); 0 on the boundary.
+
+        Raises:
+            ValueError: The weights are not fitted, or have fewer than two walks.
+        """
+        return self._cache.standard_errors[:, : self.cage.vertex_count]
+
+    @property
     def landings(self) -> dict[str, np.ndarray]:
         """The cached landings: "key", "point", "face", "edge", "param", a row a walk; copies."""
         arrays = self._cache_of("landings").records.landing_arrays
@@ -213,9 +222,8 @@ class HarmonicCoordinates:
             after = self.domain.after(edit)
             weights = cache.weights.grown(edit.cage.vertex_count)
             regrouped = cache.regrouped(after, retired_walls=edit.retired_walls, pieces_changed=after.change.regrouped)
-        added = (
-            None if points is None else _placed(after, points, count=cache.point_count, capacity=cache.point_capacity)
-        )
+        count, capacity = cache.point_count, cache.point_capacity
+        added = None if points is None else placed(after, points, count=count, capacity=capacity)
         concerned = None if edit.is_empty else find_concerned(cache, after, stats)
         with Journal.within(journal) as journal:
             self._take_over(after, weights, journal)
@@ -229,28 +237,19 @@ class HarmonicCoordinates:
     def recompute(self, *, journal: Journal | None = None) -> UpdateStats:
         """Walk every walk again on the walls as they are: the paper's naive baseline.
 
+        Until it is done the walks are there twice, so that a failure leaves those that were.
+
         Args:
             journal: Journal of a larger edit that this one is a part of, and that can take it back.
         """
         cache, state = self._cache, self.domain.now
         require_vertex_room(state.cage.vertex_count, cache.vertex_capacity)
-        weights, removed = cache.weights.grown(state.cage.vertex_count), cache.removed_points
+        weights, stats = cache.weights.grown(state.cage.vertex_count), self._new_stats()
         regrouped = cache.regrouped(state, retired_walls=np.zeros(0, dtype=np.int64), pieces_changed=True)
-        records = cache.records and (cache.records.copied() if len(removed) else cache.records.fresh())
-        stats = self._new_stats()
         with Journal.within(journal) as journal:
             self._take_over(state, weights, journal)
-            cache.keep_points(journal)
-            journal.keep_attributes(cache, "records")
-            journal.keep(*weights.arrays.values())
             cache.place(regrouped, journal)
-            cache.records = records
-            stages = cache.stages(state, stats)
-            stats.rewalked = stats.walk_count
-            if len(removed):
-                stages.run_points(np.setdiff1d(np.arange(self.point_count), removed))
-            else:
-                stages.run_all()
+            run_again(cache, state, stats, journal)
         return stats
 
     def snapshot(self) -> CoordinatesSnapshot:
@@ -347,7 +346,7 @@ class HarmonicCoordinates:
                 there are more points than were reserved. Nothing has changed then.
         """
         cache, change = self._cache_of("set_points"), PointChange(indices, points, point_keys)
-        placement = _placed(self._state, change, count=cache.point_count, capacity=cache.point_capacity)
+        placement = placed(self._state, change, count=cache.point_count, capacity=cache.point_capacity)
         with Journal.within(journal) as journal:
             return self._run_placed(placement, journal)
 
@@ -398,7 +397,7 @@ class HarmonicCoordinates:
         Args:
             points: Rest positions [m], shape (n, dimension).
             point_keys: Key 2 * wall + side for points on a wall, else -1, shape (n,).
-            walks: Walks a point.
+            walks: Walks a point; fitted coordinates take their own.
 
         Returns:
             Weights, shape (n, cage.vertex_count), float32.
@@ -407,10 +406,10 @@ class HarmonicCoordinates:
             ValueError: A point lies outside the cage, or a key is of no wall.
         """
         own = self._cache.options
-        options = WalkOptions(walks, own.seed, epsilon=own.epsilon)
+        options = own if own.correction == "fitted" else WalkOptions(walks, own.seed, epsilon=own.epsilon)
         points = checked_points(points, self.cage.dimension)
         count = len(points)
-        placement = _placed(self._state, PointChange(np.arange(count), points, point_keys), capacity=count)
+        placement = placed(self._state, PointChange(np.arange(count), points, point_keys), capacity=count)
         return weights_of(self._state, placement, options)
 
     def _cache_of(self, wanted: str) -> WalkCache:
@@ -431,18 +430,10 @@ class HarmonicCoordinates:
 
     def _run_placed(self, placement: Placement, journal: Journal) -> UpdateStats:
         """Set points and walk for them."""
-        cache, indices = self._cache, placement.indices
-        work = cache.work_of(indices)
-        cache.keep_walks(work, journal)
-        cache.keep_weights(indices, journal)
-        cache.place(placement, journal)
+        self._cache.keep_walks(self._cache.work_of(placement.indices), journal)
+        self._cache.keep_weights(placement.indices, journal)
+        self._cache.place(placement, journal)
         stats = self._new_stats()
-        stats.rewalked = work.count
-        cache.stages(self._state, stats).run_points(indices)
+        stats.rewalked = len(placement.indices) * self.walks
+        self._cache.stages(self._state, stats).run_points(placement.indices)
         return stats
-
-
-def _placed(state: DomainState, change: PointChange, *, count: int = 0, capacity: int) -> Placement:
-    """Points that were passed, checked, among the walls of a state."""
-    change, outside = checked_change(change, state.cage, count=count, capacity=capacity)
-    return Placement.of(state, change.indices, change.points, change.keys, outside=outside)

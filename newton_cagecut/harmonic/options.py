@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 BOUNDS = ("dop18", "dop26", "aabb", "sphere")
-CORRECTIONS = ("harmonic", "affine", "none")
+CORRECTIONS = ("harmonic", "affine", "none", "fitted")
 DISTANCES = ("grid", "all")
 QUADS = ("mean_value", "harmonic")
 
@@ -36,7 +36,7 @@ class WalkOptions:
         require_choice("correction", self.correction, CORRECTIONS)
         require_choice("bounds", self.bounds, BOUNDS)
         for name, low, high in (
-            ("walks", 1, 1 << 24),
+            ("walks", 0 if self.correction == "fitted" else 1, 1 << 24),
             ("seed", 0, (1 << 32) - 1),
             ("max_steps", 1, 1 << 16),
             ("degree", 1, 3),

@@ -26,7 +26,8 @@ class UpdateStats:
         resolved_points: Points whose weights were resolved again.
         capped: Walks, of all, that the cap on steps stopped.
         lowest_weight: Least weight of all points; 0 unless some are negative.
-        seconds: Time of each part [s]: "walls", "check", "rewalk", "resume", "on_face", "resolve".
+        seconds: Time of each part [s]: "walls", "check", "rewalk", "resume", "on_face", "fit", "resolve", and
+            "new_points" of points that an update has set besides.
     """
 
     walk_count: int

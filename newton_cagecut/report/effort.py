@@ -20,7 +20,7 @@ class Effort:
         reference_runs: Long runs of the reference, with seeds of their own.
         reference_walks: Walks a point of each.
         row_walks: Walks a point where the walks are not what is varied.
-        mesh_sizes: Longest edges of the finite elements, relative to the mean edge of the cage.
+        cell_counts: Finite elements that would fill the cage if they were regular.
         table_walks: Walks a point of the paper's table.
         face_counts: Faces of the cages whose growth is measured.
         point_counts: Points whose growth is measured.
@@ -33,7 +33,7 @@ class Effort:
     reference_runs: int
     reference_walks: int
     row_walks: int
-    mesh_sizes: tuple[float, ...]
+    cell_counts: tuple[int, ...]
     table_walks: int
     face_counts: tuple[int, ...]
     point_counts: tuple[int, ...]
@@ -51,7 +51,7 @@ QUICK = Effort(
     reference_runs=4,
     reference_walks=4096,
     row_walks=256,
-    mesh_sizes=(0.5, 0.25),
+    cell_counts=(400, 4000),
     table_walks=32,
     face_counts=(50, 200, 800),
     point_counts=(100, 400, 1600),
@@ -64,7 +64,7 @@ FULL = Effort(
     reference_runs=8,
     reference_walks=8192,
     row_walks=1024,
-    mesh_sizes=(1.0, 0.5, 0.25, 0.125),
+    cell_counts=(300, 1500, 7500, 25000),
     table_walks=256,
     face_counts=(50, 100, 200, 400, 800, 1600, 3200),
     point_counts=(1000, 4000, 16000, 64000),

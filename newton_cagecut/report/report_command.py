@@ -62,11 +62,11 @@ def run(options: Namespace) -> int:
     _require_extra()
     import warp as wp
 
+    wp.config.quiet = True  # before what imports kernels, for which Warp starts
     from .effort import FULL, QUICK
     from .measuring import measure_all
     from .scenes.scene import load_scenes
 
-    wp.config.quiet = True
     device = _device(options.device)
     scenes = load_scenes(options.scenes, QUICK_SCENES if options.quick else ())
     return measure_all(scenes, QUICK if options.quick else FULL, device, options.out)

@@ -71,7 +71,7 @@ def corner_ahead(mesh: PolygonMesh, corners: list[int], plane: BladePlane) -> in
 
 
 def crosses_ahead(
-    mesh: PolygonMesh, plane: BladePlane, on_hinge: np.ndarray, half_edge: np.ndarray, points: np.ndarray
+    mesh: PolygonMesh, plane: BladePlane, on_hinge: np.ndarray, half_edge: np.ndarray, s: np.ndarray
 ) -> np.ndarray:
     """Whether half-edges cross the plane ahead of the hinge, the same for twins, shape (count,).
 
@@ -84,9 +84,8 @@ def crosses_ahead(
         plane: The plane, with the hinge at ``s = 0``.
         on_hinge: Whether each vertex is the hinge's, shape (vertex_count,).
         half_edge: Half-edges that cross the plane, without ends on the hinge, shape (count,).
-        points: Where they do, shape (count, 3) [m].
+        s: Coordinate s of where they do, shape (count,) [m].
     """
-    s = plane.coordinates(points)[:, 1]
     ahead = s > 0.0
     close = np.flatnonzero(np.abs(s) <= _ROUNDING * np.ptp(mesh.vertices, axis=0).max())
     if not len(close):

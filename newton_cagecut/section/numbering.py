@@ -22,21 +22,21 @@ class Numbering:
         Args:
             section: The section.
         """
-        count = section.node_count
+        count = section.nodes.count
         touching: list[list[int]] = [[] for _ in range(count)]
         first = section.chord_ends[:, 0].tolist()
-        tipped = np.flatnonzero(section.tipped)
+        tipped = np.flatnonzero(section.chord_tipped)
         for chord, (start, end) in zip(tipped.tolist(), section.chord_node[tipped].tolist(), strict=True):
             touching[start].append(chord)
             touching[end].append(chord)
         base = section.mesh.vertex_count
-        existing, pinned = section.node_vertex.tolist(), section.node_pinned.tolist()
+        existing, pinned = section.nodes.vertex.tolist(), section.nodes.pinned.tolist()
         swells, bulges = section.chord_swells.tolist(), section.chord_bulges.tolist()
         plus, minus, tip = [0] * count, [0] * count, [0] * section.chord_count
         middle = {}
         total = np.zeros(count + 1, dtype=np.int64)
         created = base
-        for place, node in enumerate(np.argsort(section.node_rank).tolist()):
+        for place, node in enumerate(np.argsort(section.nodes.rank).tolist()):
             arriving = [chord for chord in touching[node] if first[chord] != node]
             leaving = [chord for chord in touching[node] if first[chord] == node]
             swelling = [chord for chord in leaving if swells[chord]] + [chord for chord in arriving if bulges[chord]]

@@ -8,6 +8,8 @@ of the section between two front lines, as loops of labels; loops around holes a
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from ..geometry import bridge_holes, contains_point, signed_area
@@ -17,7 +19,7 @@ from .section import Section
 _FLAT = 1e-13
 
 
-class Region:
+class SweptRegion:
     """The part of a section with ``lower < s <= upper``.
 
     Labels: node ``i`` is ``i``; where chord ``c`` crosses the upper front is ``node_count + c``; where it crosses the
@@ -34,8 +36,10 @@ class Region:
             lower: Coordinate s of an earlier front [m].
             middles: Chords that may have a vertex between their ends; None for none.
         """
-        self._section, self._upper = section, upper
-        s = section.node_coordinates[:, 1]
+        self._section = section
+        self.upper = upper
+        """Coordinate s of the front [m]."""
+        s = section.nodes.coordinates[:, 1]
         self.swept = s <= upper
         """Nodes that the upper front has reached, shape (node_count,)."""
         self._done = s <= lower
@@ -46,17 +50,16 @@ class Region:
         """Chords that cross the upper front, shape (tip_count,)."""
         crossing = self._done[section.chord_node]
         self._lower_chords = np.flatnonzero(crossing[:, 0] != crossing[:, 1])
-        nodes, chords = section.node_count, section.chord_count
+        nodes, chords = section.nodes.count, section.chord_count
         self.position = np.full((nodes + 3 * chords, section.plane.dimension), np.nan)
         """Position of each label in use, shape (label_count, dimension) [m]."""
         self.coordinates = np.full((nodes + 3 * chords, 2), np.nan)
         """Coordinates (a, s) of each label in use, shape (label_count, 2) [m]."""
-        self.position[:nodes] = section.node_position
-        self.coordinates[:nodes] = section.node_coordinates
+        self.position[:nodes] = section.nodes.position
+        self.coordinates[:nodes] = section.nodes.coordinates
         for front, shift, which in ((upper, nodes, self.upper_chords), (lower, nodes + chords, self._lower_chords)):
             if len(which):
                 self.position[shift + which], self.coordinates[shift + which] = section.chord_points(front, which)
-
         self.middles = self._place_middles(np.zeros(0, dtype=np.int64) if middles is None else middles)
         """Chords that have a vertex between their ends or a hub, shape (middle_count,)."""
         self.middle_labels = nodes + 2 * chords + self.middles
@@ -66,11 +69,11 @@ class Region:
     def labels(self) -> np.ndarray:
         """Labels behind and on the upper front: nodes, crossings of chords, vertices between, shape (count,)."""
         nodes = np.flatnonzero(self.swept)
-        return np.concatenate([nodes, self._section.node_count + self.upper_chords, self.middle_labels])
+        return np.concatenate([nodes, self._section.nodes.count + self.upper_chords, self.middle_labels])
 
     def _place_middles(self, chords: np.ndarray) -> np.ndarray:
         """Put vertices halfway along what is open of chords: of slits from their begin on, of borders at their end."""
-        section, nodes, count = self._section, self._section.node_count, self._section.chord_count
+        section, nodes, count = self._section, self._section.nodes.count, self._section.chord_count
         low, high = section.chord_ends[chords].T
         chords = chords[np.where(section.chord_swells[chords], self.swept[low], self.swept[high])]
         low, high = section.chord_ends[chords].T
@@ -82,14 +85,15 @@ class Region:
 
     def _move_hubs(self, chords: np.ndarray) -> None:
         """Move hubs off the border, halfway to the next node or to the front, so that nothing is in between."""
-        section, shift = self._section, self._section.node_count + 2 * self._section.chord_count
-        s = section.node_coordinates[:, 1]
+        section, shift = self._section, self._section.nodes.count + 2 * self._section.chord_count
+        s = section.nodes.coordinates[:, 1]
         for chord in chords.tolist():
             border = s[section.chord_node[chord, 0]]
-            step = 0.5 * (min(self._upper, s[s > border].min(initial=np.inf)) - border)
+            step = 0.5 * (min(self.upper, s[s > border].min(initial=np.inf)) - border)
             self.position[shift + chord] += step * section.plane.direction
             self.coordinates[shift + chord, 1] += step
 
+    @cached_property
     def polygons(self) -> list[list[int]]:
         """The region as polygons without holes, counterclockwise about the plane's normal, as loops of labels.
 
@@ -120,8 +124,8 @@ class Region:
         low, high = section.chord_node.T
         chord = np.flatnonzero(self.swept[low] & ~self._done[high])
         low, high = low[chord], high[chord]
-        near = np.where(self._done[low], section.node_count + section.chord_count + chord, low)
-        far = np.where(self.swept[high], high, section.node_count + chord)
+        near = np.where(self._done[low], section.nodes.count + section.chord_count + chord, low)
+        far = np.where(self.swept[high], high, section.nodes.count + chord)
         return np.stack([far, near], axis=1).tolist()
 
     def _owner(self, hole: list[int], group: int, outer: list[tuple[list[int], int, float]]) -> int | None:
@@ -140,14 +144,14 @@ class Region:
         start, end = section.chord_node.T
         active = ~(self._done[start] & self._done[end]) & (self.swept[start] | self.swept[end])
         active &= section.chord_loop >= 0
-        top = self._front_jumps(section.node_count, self.upper_chords, self.swept)
-        bottom = self._front_jumps(section.node_count + section.chord_count, self._lower_chords, self._done)
+        top = self._front_jumps(section.nodes.count, self.upper_chords, self.swept)
+        bottom = self._front_jumps(section.nodes.count + section.chord_count, self._lower_chords, self._done)
         state = np.where(self.reached, 0, np.where(self._done, -1, 1)).tolist()
         todo = active.tolist()
-        middles, middle_shift = set(self.middles.tolist()), section.node_count + 2 * section.chord_count
+        middles, middle_shift = set(self.middles.tolist()), section.nodes.count + 2 * section.chord_count
         hubs = set(np.flatnonzero(section.chord_hubs).tolist())
         start, end, following = start.tolist(), end.tolist(), section.chord_next.tolist()
-        shift = {1: section.node_count, -1: section.node_count + section.chord_count}
+        shift = {1: section.nodes.count, -1: section.nodes.count + section.chord_count}
         loops = []
         for first in np.flatnonzero(active).tolist():
             chord, loop = first, []

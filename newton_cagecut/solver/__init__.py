@@ -5,13 +5,13 @@
 
 import newton
 
-from .body_pieces import BodyPiece
+from .body.body_pieces import BodyPiece
+from .body.cage_body import CageBody
+from .body.definition import Capacity
 from .builder import add_cage_body
-from .cage_body import CageBody
 from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
-from .definition import Capacity
 from .newton_version import warn_if_untested
 from .plan import PlanEntry
 from .solver import SolverCageCut

@@ -16,7 +16,7 @@ from ..elastic import Material
 from ..geometry import as_index, as_length
 from ..harmonic import check_options
 from ..surface import Surface
-from .definition import Capacity
+from .body.definition import Capacity
 
 
 def as_surface(mesh: Surface | tuple[np.ndarray, np.ndarray] | newton.Mesh) -> Surface:

@@ -21,8 +21,8 @@ from ..cage import Cage, check_inside
 from ..elastic import Material
 from ..surface import Surface
 from . import body_arguments as arguments
-from .definition import BodyDefinition, Capacity
-from .rest_frame import RestFrame
+from .body.definition import BodyDefinition, Capacity
+from .body.rest_frame import RestFrame
 
 FREQUENCY = "cagecut:body"
 

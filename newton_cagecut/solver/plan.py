@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from .simulated_body import SimulatedBody
+    from .body.simulated_body import SimulatedBody
 
 
 class PlanEntry(NamedTuple):
@@ -54,7 +54,12 @@ def plan_of(body: SimulatedBody) -> list[PlanEntry]:
             memory["gradients"],
         ),
         ("third dimension", not body.is_plane, _space_reason(body), 0),
-        ("nested walks", body.coordinates.domain.has_nested_faces, _faces_reason(body), 0),
+        (
+            "nested walks",
+            body.coordinates.walks > 0 and body.coordinates.domain.has_nested_faces,
+            _faces_reason(body),
+            0,
+        ),
         (
             "contact",
             contact,
@@ -76,6 +81,8 @@ def _faces_reason(body: SimulatedBody) -> str:
     """Why walks go on in faces, or do not."""
     if body.is_plane:
         return "all faces are segments"
+    if body.coordinates.walks == 0:
+        return "the weights are fitted, nothing is walked"
     if body.coordinates.domain.has_nested_faces:
         return "faces with slits or more than four sides"
     return "all faces are triangles or convex quads"

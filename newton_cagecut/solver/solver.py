@@ -6,23 +6,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 
 import newton
 import numpy as np
 import warp as wp
 
 from ..section import Blade
-from .body_pieces import BodyPiece
+from .body.body_pieces import BodyPiece
+from .body.cage_body import CageBody
+from .body.edit_stamps import EditStamps, state_edits
+from .body.simulated_body import SimulatedBody
 from .builder import register_custom_attributes
-from .cage_body import CageBody
 from .config import Config
 from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
-from .edit_stamps import EditStamps, state_edits
 from .plan import PlanEntry, plan_of
-from .simulated_body import SimulatedBody
+from .progress_bars import fraction_bar
 from .viewing import SurfaceViewer
+from .warm_up import warm_up
 
 
 class SolverCageCut(newton.solvers.SolverBase):
@@ -35,7 +38,8 @@ class SolverCageCut(newton.solvers.SolverBase):
     Args:
         model: The model, with bodies added by ``add_cage_body``.
         config: How to solve; the defaults of :class:`Config` if not given.
-        progress: Called while the weights are computed, with the finished fraction between 0 and 1.
+        progress: Whether to show a bar while the weights are computed, by default in a terminal; or a function that is
+            called with the finished fraction between 0 and 1.
         options: Fields of :class:`Config`, which override those of ``config``.
 
     Raises:
@@ -50,7 +54,7 @@ class SolverCageCut(newton.solvers.SolverBase):
         model: newton.Model,
         config: Config | None = None,
         *,
-        progress: Callable[[float], None] | None = None,
+        progress: bool | Callable[[float], None] | None = None,
         **options: object,
     ) -> None:
         self._config = Config.of(config, options)
@@ -64,16 +68,17 @@ class SolverCageCut(newton.solvers.SolverBase):
             )
         count = len(definitions)
         self._stamps = EditStamps(model, [definition.label for definition in definitions])
-        self._simulated = [
-            SimulatedBody(
-                model,
-                row,
-                self._stamps,
-                config=self._config,
-                progress=progress and (lambda fraction, done=row: progress((done + fraction) / count)),
-            )
-            for row in range(count)
-        ]
+        with fraction_bar("weights", shown=progress) if not callable(progress) else nullcontext(progress) as report:
+            self._simulated = [
+                SimulatedBody(
+                    model,
+                    row,
+                    self._stamps,
+                    config=self._config,
+                    progress=lambda fraction, done=row: report((done + fraction) / count),
+                )
+                for row in range(count)
+            ]
         self._bodies = tuple(CageBody(body) for body in self._simulated)
         self._viewer = SurfaceViewer()
 
@@ -145,6 +150,22 @@ class SolverCageCut(newton.solvers.SolverBase):
             wp.copy(state_edits(state_out), state_edits(state_in))
         for body in self._simulated:
             body.step(state_in, state_out, contacts, dt)
+
+    def warm_up(self, *, progress: bool | None = None) -> None:
+        """Compile and load every kernel that the scene can need, collisions and cuts included.
+
+        Without it they are compiled when they are first launched: in the first step, contact or cut. Nothing that is
+        simulated changes. Compiled kernels stay in Warp's cache, so it is quick the next time.
+
+        Args:
+            progress: Whether to show a bar; None for in a terminal.
+        """
+        warm_up(
+            self.model,
+            self._simulated,
+            lambda state, other, contacts: self.step(state, other, None, contacts, 1.0e-4),
+            progress=progress,
+        )
 
     def begin_cut(self, body: int | str, blade: Blade) -> BodyCut:
         """Put a blade to a body; nothing changes before it advances.

@@ -9,7 +9,7 @@ import newton
 import numpy as np
 import warp as wp
 
-from .simulated_body import SimulatedBody
+from .body.simulated_body import SimulatedBody
 
 SKIN_COLOR = (0.91, 0.46, 0.33)
 CAP_COLOR = (0.98, 0.84, 0.70)

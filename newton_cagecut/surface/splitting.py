@@ -25,13 +25,19 @@ def split_triangles(opening: Opening) -> tuple[np.ndarray, np.ndarray, np.ndarra
         Triangles in the places of the old ones, shape (triangle_count, 3), further ones, shape (added_count, 3), and
         the old one of each of those, shape (added_count,).
     """
-    kept = opening.face_vertex.reshape(-1, 3).copy()
-    if not len(opening.faces):
+    kept = opening.faces.face_vertex.reshape(-1, 3).copy()
+    if not len(opening.faces.touched):
         return kept, np.zeros((0, 3), dtype=np.int64), np.zeros(0, dtype=np.int64)
-    inside = {int(opening.section.chord_face[chord]): (chord, slit) for chord, slit in opening.slits}
-    loops = [loop for face, loop in zip(opening.faces.tolist(), opening.first_loops, strict=True) if face not in inside]
-    owner = np.concatenate([opening.faces[~np.isin(opening.faces, list(inside))], opening.extra_face]).astype(np.int64)
-    loops += opening.extra_loops
+    inside = {int(opening.section.chord_face[chord]): (chord, slit) for chord, slit in opening.faces.slits}
+    loops = [
+        loop
+        for face, loop in zip(opening.faces.touched.tolist(), opening.faces.first_loops, strict=True)
+        if face not in inside
+    ]
+    owner = np.concatenate(
+        [opening.faces.touched[~np.isin(opening.faces.touched, list(inside))], opening.faces.extra_face]
+    ).astype(np.int64)
+    loops += opening.faces.extra_loops
     size = np.array([len(loop) for loop in loops], dtype=np.int64)
     is_end = _slit_ends(opening)
     parts = [_around_slit(opening, chord, slit) for chord, slit in inside.values()]
@@ -56,9 +62,9 @@ def cap_triangles(opening: Opening) -> tuple[np.ndarray, np.ndarray]:
     Args:
         opening: The opened section.
     """
-    minus, plus = opening.side_vertices()
+    minus, plus = opening.vertices.sides
     parts, sides = [np.zeros((0, 3), dtype=np.int64)], [np.zeros(0, dtype=np.int8)]
-    for loop in opening.region.polygons():
+    for loop in opening.region.polygons:
         corners = np.array(loop)
         corners = corners[triangulate(opening.region.coordinates[loop], apart=minus[corners] == plus[corners])]
         parts += [minus[corners], plus[corners[:, ::-1]]]
@@ -71,12 +77,12 @@ def _slit_ends(opening: Opening) -> np.ndarray:
 
     Shape (vertex_count,).
     """
-    section, numbering, region = opening.section, opening.numbering, opening.region
-    is_end = np.zeros(section.mesh.vertex_count + opening.created_count, dtype=bool)
-    pinned = np.flatnonzero(section.node_pinned & region.swept)
+    section, numbering, region = opening.section, opening.vertices.numbering, opening.region
+    is_end = np.zeros(section.mesh.vertex_count + opening.vertices.count, dtype=bool)
+    pinned = np.flatnonzero(section.nodes.pinned & region.swept)
     is_end[numbering.plus[pinned]] = True
-    is_end[numbering.tip[opening.tip_chords]] = True
-    free = region.middles[~section.node_pinned[section.chord_node[region.middles]].any(axis=1)]
+    is_end[numbering.tip[opening.vertices.tip_chords]] = True
+    free = region.middles[~section.nodes.pinned[section.chord_node[region.middles]].any(axis=1)]
     is_end[numbering.middle_plus[free]] = is_end[numbering.middle_minus[free]] = True
     return is_end
 
@@ -102,7 +108,7 @@ def _split_alike(polygons: np.ndarray, opening: Opening, is_end: np.ndarray) -> 
 
 def _split_quads(polygons: np.ndarray, opening: Opening) -> np.ndarray:
     """Quads, which are convex, split along their shorter diagonals."""
-    points = opening.positions(polygons)
+    points = opening.vertices.positions_of(polygons)
     across = np.linalg.norm(points[:, [0, 1]] - points[:, [2, 3]], axis=2)
     turned = np.where((across[:, 0] <= across[:, 1])[:, None], polygons, np.roll(polygons, -1, axis=1))
     return turned[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
@@ -114,7 +120,7 @@ def _around_slit(opening: Opening, chord: int, slit: list[int]) -> np.ndarray:
     The cut's line has one corner on one side and two on the other; the one sees its side of the slit whole, the two
     each the end that is nearer.
     """
-    mesh, vertex = opening.section.mesh, opening.face_vertex
+    mesh, vertex = opening.section.mesh, opening.faces.face_vertex
     leaving, coming = opening.section.arrive[opening.section.chord_slot[chord]]
     near, side, far, other = slit
     if mesh.next[leaving] == coming:

@@ -3,8 +3,7 @@
 """Progressive cuts of surfaces.
 
 Section 6.3 of the paper splits the triangles that the cut crosses. Like a cage's, a surface's cut is a pure function of
-the surface before it, the plane and the front; what opens is capped, so that a closed surface stays closed. A flat mesh
-is cut as the open mesh in space that it is, by the plane that stands on the blade's line.
+the surface before it, the plane and the front; what opens is capped, so that a closed surface stays closed.
 """
 
 from __future__ import annotations
@@ -13,27 +12,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..geometry import units
-from ..section import BladePlane, ClippedSection, Hinge, Numbering, Opening, Section, clear_front
-from .splitting import cap_triangles, split_triangles
+from ..geometry import as_number
+from ..section import BladePlane, Hinge
+from .open_surface import open_surface
 from .surface import Surface
-
-_ON_FRONT = 1e-10
-_ROUNDING = 1e-13
-_STATE = (
-    "base",
-    "surface",
-    "plane",
-    "wall",
-    "front",
-    "_reach",
-    "_offset",
-    "_offset_ahead",
-    "_section",
-    "_numbering",
-    "_tips",
-    "_tip_wall",
-)
+from .surface_strip import SurfaceStrip
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,11 +39,38 @@ class SurfaceEdit:
 
 
 @dataclass(frozen=True, eq=False)
+class SurfaceCutState:
+    """Where a surface's cut is."""
+
+    strip: SurfaceStrip
+    """The present plane's part of it."""
+    surface: Surface
+    """The surface."""
+    front: float = -np.inf
+    """Coordinate s of the blade in the plane [m]."""
+    reach: float = -np.inf
+    """Coordinate s up to which the strip is open [m]."""
+    tips: np.ndarray | None = None
+    """Points at the tips, shape (tip_count,); None before there are some."""
+    tip_wall: int = -1
+    """Wall of the cut's sides that meet at the tips."""
+
+    @classmethod
+    def before(cls, strip: SurfaceStrip) -> SurfaceCutState:
+        """The state before a strip opens that begins outside.
+
+        Args:
+            strip: The strip.
+        """
+        return cls(strip, strip.base, tip_wall=strip.wall)
+
+
+@dataclass(frozen=True, eq=False)
 class SurfaceSnapshot:
     """Where a surface's cut was; made by :meth:`SurfaceCut.snapshot`."""
 
     identity: object
-    present: tuple
+    state: SurfaceCutState
 
 
 class SurfaceCut:
@@ -90,44 +100,33 @@ class SurfaceCut:
             )
         surface.refuse_branches()
         self._identity = object()
-        self._begin(surface, plane, wall, window=window)
+        self._state = SurfaceCutState.before(SurfaceStrip.of(surface, plane, wall, window=window))
         self._before = self.snapshot()
 
-    def _begin(
-        self,
-        surface: Surface,
-        plane: BladePlane,
-        wall: int,
-        *,
-        hinge: Hinge | None = None,
-        window: tuple[float, float, float] | None = None,
-        offset: np.ndarray | None = None,
-    ) -> None:
-        plane = plane.in_space()
-        self._offset = np.zeros(3) if offset is None else offset
-        self._offset_ahead = float(plane.coordinates((plane.origin + self._offset)[None])[0, 1])
-        plane = replace(plane, origin=plane.origin + self._offset)
-        size = np.ptp(surface.points, axis=0).max()
-        rounding = {"tolerance": _ROUNDING * size}
-        section = Section(surface.mesh, plane, face_group=surface.triangle_solid, hinge=hinge, **rounding)
-        if window is not None:
-            section = ClippedSection(section, *window, tolerance=0.0)
-        self.base = surface
+    @property
+    def base(self) -> Surface:
         """The surface before the present plane's part of the cut."""
-        self.surface = surface
+        return self._state.strip.base
+
+    @property
+    def surface(self) -> Surface:
         """The surface as it is now."""
-        self.plane = plane
+        return self._state.surface
+
+    @property
+    def plane(self) -> BladePlane:
         """Plane of the cut, in space."""
-        self.wall = int(wall)
+        return self._state.strip.plane
+
+    @property
+    def wall(self) -> int:
         """Number of the wall on which new points lie."""
-        self.front = -np.inf
+        return self._state.strip.wall
+
+    @property
+    def front(self) -> float:
         """Coordinate s of the blade in the plane [m]."""
-        self._reach = -np.inf
-        self._tolerance = _ON_FRONT * size
-        self._section = section
-        self._numbering = Numbering(section)
-        self._tips = np.zeros(0, dtype=np.int64) if hinge is None else hinge.vertices
-        self._tip_wall = self.wall
+        return self._state.front
 
     def go_on(
         self,
@@ -150,24 +149,16 @@ class SurfaceCut:
         Raises:
             ValueError: If the section does not close at the front. Nothing has changed then.
         """
-        surface = surface or self.surface
+        now, surface = self._state, surface or self.surface
         if not hinged:
-            self._begin(surface, plane, wall, window=window)
+            self._state = SurfaceCutState.before(SurfaceStrip.of(surface, plane, wall, window=window))
             return
-        front_wall, key = self._tip_wall, surface.triangle_key
-        on_front = np.zeros(surface.point_count, dtype=bool)
-        on_front[self._tips] = True
-        shared = np.isin(np.arange(surface.point_count), surface.triangles[key == 2 * front_wall])
-        shared &= np.isin(np.arange(surface.point_count), surface.triangles[key == 2 * front_wall + 1])
-        candidates = np.flatnonzero(shared)
-        s = self.plane.coordinates(surface.mesh.vertices[candidates])[:, 1]
-        on_front[candidates[np.abs(s - self._reach) <= self._tolerance]] = True
-        offset = self._offset
-        if np.isfinite(self.front):
-            offset = offset + (self._reach - self.front) * self.plane.direction
-        self._begin(surface, plane, wall, hinge=Hinge.of(surface.mesh, key, front_wall, on_front), offset=offset)
-        self.front = self._reach = 0.0
-        self._tip_wall = front_wall
+        hinge = _find_hinge(now, surface)
+        offset = now.strip.offset
+        if np.isfinite(now.front):
+            offset = offset + (now.reach - now.front) * now.strip.plane.direction
+        strip = SurfaceStrip.of(surface, plane, wall, hinge=hinge, offset=offset)
+        self._state = SurfaceCutState(strip, surface, 0.0, 0.0, hinge.vertices, now.tip_wall)
 
     def advance(self, front: float) -> SurfaceEdit:
         """Open the surface up to the front.
@@ -179,34 +170,29 @@ class SurfaceCut:
             The step from the surface as it was.
 
         Raises:
-            ValueError: If the front is not a number or goes back.
+            TypeError: If the front is not a number.
+            ValueError: If the front is not a number's value or goes back.
         """
-        front = float(front)
-        if np.isnan(front):
-            raise ValueError("the front of a cut must be a number, got nan")
-        if front < self.front:
-            raise ValueError(f"a cut never goes back: it has reached {self.front:g}, asked for {front:g}")
-        if front > self.front:
-            # Tips keep off points and edges of the mesh, so that it is plain in which triangle each of them lies.
-            nodes = np.sort(self._section.node_coordinates[:, 1])
-            self._reach = max(self._reach, clear_front(nodes, front - self._offset_ahead, self._tolerance))
-        self.front = front
-        before = self.surface
-        opening = Opening(self._section, self._numbering, self._reach)
-        if opening.created_count:
-            self._tips, self._tip_wall = self._numbering.tip[opening.tip_chords], self.wall
-            self.surface = self._open_surface(opening)
-        common = before.point_count
-        differs = (before.points != self.surface.points[:common]).any(axis=1)
-        moved = np.flatnonzero(differs | (before.point_key != self.surface.point_key[:common]))
-        created = np.arange(common, self.surface.point_count)
+        front, now = as_number(front, "the front of a cut"), self._state
+        if front < now.front:
+            raise ValueError(f"a cut never goes back: it has reached {now.front:g}, asked for {front:g}")
+        strip, before = now.strip, now.surface
+        reach = max(now.reach, strip.reach_at(front)) if front > now.front else now.reach
+        opening = strip.strip.opened(reach)
+        after = replace(now, front=front, reach=reach)
+        if opening.vertices.count:
+            tips = opening.vertices.numbering.tip[opening.vertices.tip_chords]
+            opened = open_surface(strip.base, opening, strip.wall)
+            after = replace(after, surface=opened, tips=tips, tip_wall=strip.wall)
+        created, moved = _changed_points(before, after.surface)
         if len(created) == len(moved) == 0:
-            self.surface = before
-        return SurfaceEdit(before, self.surface, created, moved)
+            after = replace(after, surface=before)
+        self._state = after
+        return SurfaceEdit(before, after.surface, created, moved)
 
     def snapshot(self) -> SurfaceSnapshot:
         """Remember where the cut is, for :meth:`rewind`; nothing is copied."""
-        return SurfaceSnapshot(self._identity, tuple(getattr(self, name) for name in _STATE))
+        return SurfaceSnapshot(self._identity, self._state)
 
     def rewind(self, to: SurfaceSnapshot | None = None) -> Surface:
         """Take the cut back to a snapshot, or to the surface before the cut.
@@ -223,35 +209,27 @@ class SurfaceCut:
         to = self._before if to is None else to
         if to.identity is not self._identity:
             raise ValueError("the snapshot is of another cut; rewind that one, or take a snapshot of this one")
-        for name, value in zip(_STATE, to.present, strict=True):
-            setattr(self, name, value)
+        self._state = to.state
         return self.surface
 
-    def _open_surface(self, opening: Opening) -> Surface:
-        base, wall = self.base, self.wall
-        kept, added, owner = split_triangles(opening)
-        caps, side = cap_triangles(opening)
-        keys = np.full(opening.created_count, 2 * wall + 1, dtype=np.int32)
-        minus, plus = (ids[opening.region.labels] for ids in opening.side_vertices())
-        keys[minus[minus != plus] - base.point_count] = 2 * wall
-        return Surface._assembled(
-            np.concatenate([base.points, opening.created_positions()[:, : base.dimension]]),
-            np.concatenate([kept, added, caps]).astype(np.int32),
-            self._carried(opening, base.uvs),
-            None if base.normals is None else units(self._carried(opening, base.normals)),
-            np.concatenate([base.triangle_cap, base.triangle_cap[owner], np.full(len(caps), wall, dtype=np.int32)]),
-            np.concatenate([base.cap_side, base.cap_side[owner], side]),
-            np.concatenate([base.point_key, keys]),
-        )
 
-    def _carried(self, opening: Opening, values: np.ndarray | None) -> np.ndarray | None:
-        """Values of all points from those of the points before, linear along edges and chords."""
-        if values is None:
-            return None
-        section, chords = self._section, opening.tip_chords
-        at_nodes = section.node_values(values)
-        low, high = section.chord_ends[chords].T
-        s = section.node_coordinates[:, 1]
-        t = ((self._reach - s[low]) / (s[high] - s[low]))[:, None]
-        at_tips = at_nodes[low] + t * (at_nodes[high] - at_nodes[low])
-        return np.concatenate([values, opening.created_values(at_nodes, at_tips)])
+def _changed_points(before: Surface, after: Surface) -> tuple[np.ndarray, np.ndarray]:
+    """Points that are new, and those that have moved or changed sides."""
+    common = before.point_count
+    differs = (before.points != after.points[:common]).any(axis=1) | (before.point_key != after.point_key[:common])
+    return np.arange(common, after.point_count), np.flatnonzero(differs)
+
+
+def _find_hinge(now: SurfaceCutState, surface: Surface) -> Hinge:
+    """The front of a cut in a surface that others may have cut since."""
+    key, count = surface.triangle_key, surface.point_count
+    on_front = np.zeros(count, dtype=bool)
+    if now.tips is not None:
+        on_front[now.tips] = True
+    shared = np.ones(count, dtype=bool)
+    for side in (0, 1):
+        shared &= np.isin(np.arange(count), surface.triangles[key == 2 * now.tip_wall + side])
+    candidates = np.flatnonzero(shared)
+    s = now.strip.plane.coordinates(surface.mesh.vertices[candidates])[:, 1]
+    on_front[candidates[np.abs(s - now.reach) <= now.strip.strip.tolerance]] = True
+    return Hinge.of(surface.mesh, key, now.tip_wall, on_front)

@@ -15,10 +15,32 @@ import numpy as np
 from ...geometry import as_number
 from ...section import Blade, BladePlane, Hinge, Section, clear_plane, clear_turn
 from ..cage import Cage
+from .cage_strip import CageStrip, StripState
 from .edit import CageEdit
-from .strip import Strip, StripState
 
 _LEAST_TURN_COSINE = -0.985
+
+
+@dataclass(frozen=True, eq=False)
+class CutState:
+    """Where a cut is."""
+
+    strips: tuple[tuple[CageStrip, float], ...]
+    """Its strips, and the depth at which each of them begins [m]."""
+    depth: float
+    """Depth to which it was advanced, along all its turns [m]."""
+    opened: StripState
+    """What the last strip has opened."""
+
+    @property
+    def strip(self) -> CageStrip:
+        """The present strip."""
+        return self.strips[-1][0]
+
+    @property
+    def begun(self) -> float:
+        """Depth at which the present strip begins [m]."""
+        return self.strips[-1][1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,14 +48,12 @@ class CutSnapshot:
     """Where a cut was; made by :meth:`Cut.snapshot`."""
 
     identity: object
-    strips: tuple[tuple[Strip, float], ...]
-    depth: float
-    state: StripState
+    state: CutState
 
     @property
     def cage(self) -> Cage:
         """The cage at the time."""
-        return self.state.cage
+        return self.state.opened.cage
 
 
 class Cut:
@@ -61,40 +81,44 @@ class Cut:
             )
         self.base = cage
         """The cage before the cut."""
-        self.depth = 0.0
-        """Depth to which the cut was advanced, along all its turns [m]."""
         self._identity = object()
         self._blade = blade
-        plane = clear_plane(BladePlane.of(blade), cage.vertices, cage.length_tolerance)
-        self._begin((), Strip(cage, plane, window=blade.window), 0.0)
+        self._state = self._from_outside(cage)
 
-    def _begin(self, before: tuple[tuple[Strip, float], ...], strip: Strip, depth: float) -> None:
-        self._strips: tuple[tuple[Strip, float], ...] = (*before, (strip, depth))
-        self._state = strip.start
+    def _from_outside(self, cage: Cage) -> CutState:
+        """The state before the blade touches a cage."""
+        plane = clear_plane(BladePlane.of(self._blade), cage.vertices, cage.length_tolerance)
+        strip = CageStrip.from_outside(cage, plane, self._blade.window)
+        return CutState(((strip, 0.0),), 0.0, strip.start)
 
     @property
-    def _strip(self) -> Strip:
-        return self._strips[-1][0]
+    def depth(self) -> float:
+        """Depth to which the cut was advanced, along all its turns [m]."""
+        return self._state.depth
+
+    @property
+    def _strips(self) -> tuple[tuple[CageStrip, float], ...]:
+        return self._state.strips
 
     @property
     def cage(self) -> Cage:
         """The cage as it is now."""
-        return self._state.cage
+        return self._state.opened.cage
 
     @property
     def hinged(self) -> bool:
         """Whether the present plane begins at ``s = 0``, at the front of an earlier part of the cut."""
-        return self._strip.hinged
+        return self._state.strip.hinged
 
     @property
     def plane(self) -> BladePlane:
         """The plane in which the blade moves, moved off the cage's vertices."""
-        return self._strip.plane
+        return self._state.strip.plane
 
     @property
     def wall(self) -> int:
         """Number of the present plane's wall in the walls of the cage, once it has begun to open."""
-        return self._strip.wall
+        return self._state.strip.wall
 
     @property
     def window(self) -> tuple[float, float, float] | None:
@@ -104,22 +128,22 @@ class Cut:
     @property
     def section(self) -> Section:
         """The present plane's section."""
-        return self._strip.section
+        return self._state.strip.strip.section
 
     @property
     def front(self) -> float:
         """Coordinate s of the blade in the plane [m]."""
-        return self._state.front
+        return self._state.opened.front
 
     @property
     def length(self) -> float:
         """Depth at which the cut is complete, 0 if the blade misses the cage [m]."""
-        return self._strips[-1][1] + self._strip.length
+        return self._state.begun + self._state.strip.length
 
     @property
     def complete(self) -> bool:
         """Whether nothing is left to cut."""
-        return self._strip.is_complete(self.front)
+        return self._state.strip.strip.is_complete(self.front)
 
     def advance(self, to: float) -> CageEdit:
         """Move the blade on to a depth, wherever it is now; by a length it is moved with ``cut.depth + length``.
@@ -137,8 +161,9 @@ class Cut:
         depth = as_number(to, "the depth of a cut")
         if depth < self.depth:
             raise ValueError(f"a cut never goes back: it has reached depth {self.depth:g}, asked for {depth:g}")
-        self._state, edit = self._strip.advance(self._state, depth - self._strips[-1][1], depth)
-        self.depth = depth
+        now = self._state
+        opened, edit = now.strip.advance(now.opened, depth - now.begun, depth)
+        self._state = CutState(now.strips, depth, opened)
         return edit
 
     def turn(self, direction: np.ndarray) -> None:
@@ -159,7 +184,7 @@ class Cut:
         turned = plane.towards(direction)
         if np.dot(turned.across, plane.across) < _LEAST_TURN_COSINE:
             raise ValueError("the blade would turn back into its own cut; turn it by less than 170 degrees")
-        self._go_on(self.cage, turned)
+        self._state = self._gone_on(self.cage, turned)
 
     def resume(self, cage: Cage) -> None:
         """Go on in a cage that other cuts, extensions or obstacles have changed since the last step.
@@ -175,42 +200,44 @@ class Cut:
         """
         if cage.walls[: len(self.cage.walls)] != self.cage.walls:
             raise ValueError("the cage did not come of this cut's: it lacks some of its walls; begin a new cut")
+        now = self._state
         if self.complete:
-            self._state = StripState(cage, self.front, self._state.half_edge_face)
+            opened = StripState(cage, self.front, now.opened.half_edge_face)
+            self._state = CutState(now.strips, now.depth, opened)
         elif not (self._is_open or self.hinged):
-            plane = clear_plane(BladePlane.of(self._blade), cage.vertices, cage.length_tolerance)
-            self._begin((), Strip(cage, plane, window=self._blade.window), 0.0)
+            self._state = self._from_outside(cage)
         else:
-            self._go_on(cage, self._front_plane())
+            self._state = self._gone_on(cage, self._front_plane())
 
     @property
     def _is_open(self) -> bool:
         """Whether the present plane's wall has begun to open."""
-        return self.cage is not self._strip.base
+        return self.cage is not self._state.strip.base
 
     def _front_plane(self) -> BladePlane:
         """The present plane with its origin at the front."""
         return self.plane.at(max(self.front, 0.0) if self.hinged else self.front)
 
-    def _go_on(self, cage: Cage, plane: BladePlane) -> None:
-        """Begin a strip at the present front, in place of one that was begun here and not opened."""
+    def _gone_on(self, cage: Cage, plane: BladePlane) -> CutState:
+        """The state with a strip begun at the present front, in place of one that was begun here and not opened."""
         if self._blade.window is not None and self.base.dimension == 3:
             raise ValueError(
                 "a knife of finite width, or one that starts inside, neither turns nor goes on after another cut; "
                 "begin a new cut"
             )
-        strip, begun = self._strips[-1]
-        wall = strip.wall if self._is_open else strip.hinge_wall
+        now = self._state
+        wall = now.strip.wall if self._is_open else now.strip.hinge_wall
         hinge = _find_hinge(cage, wall, self._front_plane())
         others = np.delete(cage.vertices, hinge.vertices, axis=0)
         plane = clear_turn(plane, others, cage.length_tolerance)
-        replaced = self.hinged and not self._is_open and begun == self.depth
-        strips = self._strips[:-1] if replaced else self._strips
-        self._begin(strips, Strip(cage, plane, first=0.0, hinge=hinge, hinge_wall=wall), self.depth)
+        replaced = self.hinged and not self._is_open and now.begun == now.depth
+        strips = now.strips[:-1] if replaced else now.strips
+        strip = CageStrip.from_hinge(cage, plane, hinge, wall)
+        return CutState((*strips, (strip, now.depth)), now.depth, strip.start)
 
     def snapshot(self) -> CutSnapshot:
         """Remember where the cut is, for :meth:`rewind`; nothing is copied."""
-        return CutSnapshot(self._identity, self._strips, self.depth, self._state)
+        return CutSnapshot(self._identity, self._state)
 
     def rewind(self, to: float | CutSnapshot = 0.0) -> Cage:
         """Take the blade back and the cut with it: a cut is a function of its depth, so nothing of it stays.
@@ -231,17 +258,15 @@ class Cut:
         if isinstance(to, CutSnapshot):
             if to.identity is not self._identity:
                 raise ValueError("the snapshot is of another cut; rewind that one, or take a snapshot of this one")
-            self._strips, self.depth, self._state = to.strips, to.depth, to.state
+            self._state = to.state
             return self.cage
         depth = as_number(to, "the depth of a cut")
         if not 0.0 <= depth <= self.depth:
             raise ValueError(f"a cut is rewound to a depth between 0 and {self.depth:g}, where it is, not to {depth:g}")
-        kept = [item for item in self._strips if item[1] <= depth]
-        self._strips = tuple(kept)
+        kept = tuple(item for item in self._strips if item[1] <= depth)
         strip, begun = kept[-1]
-        self._state, self.depth = strip.start, begun
-        if depth > begun:
-            self.advance(to=depth)
+        opened = strip.advance(strip.start, depth - begun, depth)[0] if depth > begun else strip.start
+        self._state = CutState(kept, depth, opened)
         return self.cage
 
 

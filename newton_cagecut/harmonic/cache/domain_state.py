@@ -5,13 +5,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import warp as wp
 
 from ...cage import Cage, CageEdit
 from ..faces.face_tables import FaceTables, build_face_tables
+from ..fit.boundary_fit import BoundaryFit
+from ..fit.face_values import FaceValues
+from ..fit.residual_sums import ResidualTable
+from ..fit.residuals import build_residuals
 from ..launch import launch
 from ..walls.frame import UnitFrame
 from ..walls.grid import CandidateGrid
@@ -31,6 +36,7 @@ class DomainState:
         quads: "mean_value" or "harmonic": how convex quads interpolate.
         distance: "grid" or "all": how the nearest wall is found.
         change: What the edit that led here means for walks; None at first.
+        known_faces: Boundary functions of faces from the last fit of any of these states, which the next one can use.
     """
 
     cage: Cage
@@ -39,6 +45,7 @@ class DomainState:
     quads: str
     distance: str
     change: DomainChange | None = None
+    known_faces: dict[bytes, FaceValues] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -72,6 +79,16 @@ class DomainState:
     def device(self) -> wp.context.Device:
         """Where everything is."""
         return self.walls.device
+
+    @cached_property
+    def fit(self) -> BoundaryFit:
+        """The fit of the cage's coordinates, made when it is first asked for."""
+        return BoundaryFit(self.cage, quads=self.quads, device=self.device, known=self.known_faces)
+
+    @cached_property
+    def residuals(self) -> ResidualTable:
+        """What the fit leaves over on the faces, evaluated when it is first asked for."""
+        return build_residuals(self.fit, self.frame, self.device)
 
     def pieces_of(self, points: np.ndarray) -> np.ndarray:
         """Piece of the cage that each rest position lies in; all 0 while there is one. Shape (n,)."""

@@ -30,6 +30,7 @@ def weights_of(state: DomainState, placement: Placement, options: WalkOptions) -
     count, device = len(placement.indices), state.device
     points = empty_points(count, np.zeros(count, dtype=bool), device)
     place_points(points, placement.indices, placement.positions, placement.keys, placement.pieces)
-    weights = PointWeights(count, 0, state.cage.vertex_count, device=device)
+    errors = options.correction == "fitted" and options.walks > 0
+    weights = PointWeights(count, 0, state.cage.vertex_count, device=device, errors=errors)
     Stages(state, options, points, count, weights, None, UpdateStats(count * options.walks)).run_all()
     return weights.weights.numpy()

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""The incremental update: only what an edit concerns is walked, evaluated and resolved again (paper, section 5.2)."""
+"""Updates: only what an edit concerns is walked, evaluated and resolved again (paper, section 5.2), or everything."""
 
 from __future__ import annotations
 
@@ -48,6 +48,9 @@ def find_concerned(cache: WalkCache, after: DomainState, stats: UpdateStats) -> 
     walks, points, point_count = cache.options.walks, cache.points, cache.point_count
     walk_count, removed = point_count * walks, cache.removed_points
     touched = wp.zeros(point_count, dtype=wp.uint8, device=device)
+    if walks == 0:
+        nothing = cache.work(wp.empty(0, dtype=wp.int32, device=device))
+        return ConcernedWalks(nothing, nothing, nothing, touched)
     with stats.time("check", device):
         pieces = records.kind.bound_pieces(change.polygons, change.directions, device)
         marks = wp.zeros(walk_count, dtype=wp.uint8, device=device)
@@ -90,10 +93,35 @@ def run_concerned(
         stages.land(concerned.resume, part="resume")
     stages.land(concerned.on_face, part="on_face", touched=touched)
     again = touched.numpy() != 0
-    if cache.options.correction != "none":
+    if cache.options.correction == "fitted":
+        again[:] = True
+    elif cache.options.correction != "none":
         # An affine correction is spread over all vertices of a piece.
         again |= cache.weights.degrees.numpy()[: cache.point_count] == 0
     again[cache.removed_points] = False
     indices = np.flatnonzero(again)
     cache.keep_weights(indices, journal)
     stages.resolve(indices)
+
+
+def run_again(cache: WalkCache, state: DomainState, stats: UpdateStats, journal: Journal) -> None:
+    """Walk for all points that were not removed.
+
+    Args:
+        cache: Points, whose walks may be kept.
+        state: Walls and faces.
+        stats: Where counts and times are added.
+        journal: Where all that is overwritten is kept before.
+    """
+    removed, records = cache.removed_points, cache.records
+    cache.keep_points(journal)
+    journal.keep_attributes(cache, "records")
+    journal.keep(*cache.weights.arrays.values())
+    if records is not None:
+        cache.records = records.copied() if len(removed) else records.fresh()
+    stages = cache.stages(state, stats)
+    stats.rewalked = stats.walk_count
+    if len(removed):
+        stages.run_points(np.setdiff1d(np.arange(cache.point_count), removed))
+    else:
+        stages.run_all()

@@ -13,6 +13,7 @@ import warp as wp
 
 from ..faces.land import land_walks
 from ..options import WalkOptions
+from ..resolve.fitted import WalkedResiduals, resolve_fitted
 from ..resolve.point_weights import PointWeights
 from ..resolve.resolve import resolve_points
 from ..stats import UpdateStats
@@ -59,7 +60,7 @@ class Stages:
         walks, count = self.options.walks, self.point_count
         batch = count
         if self.records is None:
-            batch = min(count, max(1, _BATCH_WALKS // walks))
+            batch = min(count, max(1, _BATCH_WALKS // max(walks, 1)))
             self.records = unkept_records(self.state, self.options, batch * walks)
         for first in range(0, count, max(batch, 1)):
             size = min(batch, count - first)
@@ -106,13 +107,25 @@ class Stages:
         change = self.state.change
         before = self.state.faces if change is None else change.faces_before
         with self.stats.time(part, self.state.device):
-            land_walks(work, self.records, self.points, self.state.faces, self.options, before=before, touched=touched)
+            land_walks(
+                work,
+                self.records,
+                self.points,
+                self.state.faces,
+                self.options,
+                before=before,
+                touched=touched,
+                nested=self.options.correction != "fitted",
+            )
 
     def resolve(self, indices: np.ndarray, *, first_point: int = 0) -> None:
         """Reduce the landings of points to weights; ``first_point`` is the one whose walks are the first records."""
         if not len(indices):
             return
-        stats, walks = self.stats, self.options.walks
+        stats = self.stats
+        if self.options.correction == "fitted":
+            self._resolve_fitted(indices, first_point)
+            return
         with stats.time("resolve", self.state.device):
             resolve_points(
                 indices,
@@ -124,13 +137,30 @@ class Stages:
                 half_side=self.state.frame.half_side,
                 first_point=first_point,
             )
-            stats.resolved_points += len(indices)
-            stats.lowest_weight = float(self.weights.lowest.numpy()[: self.point_count].min())
-            keys = self.records.landings.key
-            if self.records.bounded:
-                stats.capped = count_capped(keys[: self.point_count * walks], int(CAPPED))
-            else:
-                stats.capped += count_capped(keys[: len(indices) * walks], int(CAPPED))
+            self._count_resolved(indices)
+
+    def _resolve_fitted(self, indices: np.ndarray, first_point: int) -> None:
+        stats, state, walks = self.stats, self.state, self.options.walks
+        with stats.time("fit", state.device):
+            fit = state.fit
+            residuals = state.residuals if walks else None
+        with stats.time("resolve", state.device):
+            landed = None
+            if walks:
+                landed = WalkedResiduals(residuals, state.faces, self.records, walks, first_point)
+            resolve_fitted(indices, self.weights, self.points, fit, state.grid, landed)
+            self._count_resolved(indices)
+
+    def _count_resolved(self, indices: np.ndarray) -> None:
+        self.stats.resolved_points += len(indices)
+        self.stats.lowest_weight = float(self.weights.lowest.numpy()[: self.point_count].min())
+        if self.options.walks == 0:
+            return
+        keys, walks = self.records.landings.key, self.options.walks
+        if self.records.bounded:
+            self.stats.capped = count_capped(keys[: self.point_count * walks], int(CAPPED))
+        else:
+            self.stats.capped += count_capped(keys[: len(indices) * walks], int(CAPPED))
 
 
 def unkept_records(state: DomainState, options: WalkOptions, count: int) -> WalkRecords:

@@ -131,6 +131,7 @@ def _used(name: str, cache: WalkCache, cage: Cage) -> tuple[slice, ...]:
     if name.startswith("landing "):
         return (walks,)
     shapes = {"bounds": (slice(None), walks), "weights": (points, vertices), "gradients": (slice(None), vertices)}
+    shapes["errors"] = (points, vertices)
     return shapes.get(name, (points,))
 
 
@@ -211,7 +212,7 @@ def _check_repetition(
     points = np.flatnonzero(keys == INSIDE)
     if not len(points):
         points = np.flatnonzero(keys != REMOVED)
-    count = max(1, min(_REPEATED_POINTS, _REPEATED_WALKS // cache.options.walks))
+    count = max(1, min(_REPEATED_POINTS, _REPEATED_WALKS // max(cache.options.walks, 1)))
     points = np.unique(points[np.linspace(0, len(points) - 1, count).astype(int)]) if len(points) else points
     cache.stages(domain.now, UpdateStats(len(points) * cache.options.walks)).run_points(points)
     for name, rows in _used_rows(cache, domain.cage).items():

@@ -63,7 +63,8 @@ class WalkCache:
         self.points = empty_points(point_capacity, gradient_mask, state.device)
         self.rest = np.zeros((0, state.cage.dimension))
         room = vertex_capacity or state.cage.vertex_count
-        self.weights = PointWeights(point_capacity, int(gradient_mask.sum()), room, device=state.device)
+        errors = options.correction == "fitted" and options.walks > 0
+        self.weights = PointWeights(point_capacity, int(gradient_mask.sum()), room, device=state.device, errors=errors)
         self.records: WalkRecords | None = None
         if cuttable:
             self.records = kept_records(state, options, point_capacity * options.walks)
@@ -89,6 +90,17 @@ class WalkCache:
         return np.flatnonzero(self.keys == REMOVED)
 
     @property
+    def standard_errors(self) -> np.ndarray:
+        """Standard errors of the weights, shape (point_count, vertex_capacity); a copy.
+
+        Raises:
+            ValueError: The weights are not fitted, or have fewer than two walks.
+        """
+        if self.options.correction != "fitted" or self.options.walks < 2:
+            raise ValueError("errors: only correction='fitted' with two walks or more tells standard errors")
+        return self.weights.errors.numpy()[: self.point_count].copy()
+
+    @property
     def arrays(self) -> dict[str, wp.array]:
         """The arrays that edits write to, of points whose walks are kept, by name."""
         records = self.records
@@ -101,7 +113,7 @@ class WalkCache:
         records = self.records
         landings = records.landing_arrays.values() if records else ()
         return {
-            "weights": _bytes(self.weights.weights),
+            "weights": _bytes(self.weights.weights) + _bytes(self.weights.errors),
             "gradients": _bytes(self.weights.gradients),
             "landings": sum(map(_bytes, landings)),
             "bounds": _bytes(records.bounds) if records else 0,
@@ -165,7 +177,9 @@ class WalkCache:
         write_rows(self.points.piece, indices, -1)
         write_rows(self.weights.degrees, indices, 0)
         wp.indexedarray(self.records.landings.key, [work.listed]).zero_()  # no capped walk is counted
-        wp.indexedarray(self.weights.weights, [rows, None]).zero_()
+        for array in (self.weights.weights, self.weights.errors):
+            if array.size:
+                wp.indexedarray(array, [rows, None]).zero_()
         if slopes.size:
             wp.indexedarray(self.weights.gradients, [slopes, None]).zero_()
 
@@ -188,6 +202,8 @@ class WalkCache:
         for array in (self.weights.weights, self.weights.degrees, self.weights.lowest):
             journal.keep_rows(array, rows)
         journal.keep_rows(self.weights.gradients, slopes)
+        if self.weights.errors.size:
+            journal.keep_rows(self.weights.errors, rows)
 
     def _weight_rows(self, indices: np.ndarray) -> tuple[wp.array, wp.array]:
         """Rows of points among the weights, and of those that have gradients among these."""

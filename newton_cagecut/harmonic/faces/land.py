@@ -110,6 +110,7 @@ def land_walks(
     *,
     before: FaceTables,
     touched: wp.array | None = None,
+    nested: bool = True,
 ) -> None:
     """Evaluate landings on the faces as they are.
 
@@ -122,8 +123,10 @@ def land_walks(
         before: The faces on which the landings were evaluated before, if they were.
         touched: Where to mark points of which a boundary value is another one than on the faces before, shape
             (point_count,).
+        nested: Whether walks go on in faces that ask for it; otherwise landings there only know their face.
     """
-    kernel = make_land_kernel(dimension=records.dimension, nested=faces.nested_count > 0, compare=touched is not None)
+    nested = nested and faces.nested_count > 0
+    kernel = make_land_kernel(dimension=records.dimension, nested=nested, compare=touched is not None)
     if touched is None:
         touched = wp.empty(0, dtype=wp.uint8, device=records.device)
     inputs = [work.list, points, before, faces, records.landings, options.epsilon, options.max_steps, touched]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from .density_fit import ChargePanels, DensityFit, DipolePanels
+from .layers.density_fit import ChargePanels, DensityFit, DipolePanels
 
 _EXTENT = 0.25
 """Half the greatest extent of a polygon in the frame of its fit: single layers in the plane need one well below 1."""
@@ -36,7 +36,8 @@ class PlaneFit:
         edges = (edges - self._center) * self._scale
         self._edges, self._columns = edges, columns
         part, first, last = _uncovered(edges)
-        share = _graded_shares(*_gradings(edges, columns)[:, part], panels)
+        self._shares = _graded_shares(*_gradings(edges, columns), panels)
+        share = self._shares[part]
         share = first[:, None] + (last - first)[:, None] * share
         start, step = edges[part, 0], edges[part, 1] - edges[part, 0]
         place = start[:, None] + share[:, :, None] * step[:, None]
@@ -58,6 +59,17 @@ class PlaneFit:
         )
         self._fit = DensityFit(charges, dipoles, values, device)
 
+    def panels(self) -> tuple[np.ndarray, np.ndarray]:
+        """Panels of all edges, slits on both sides.
+
+        Returns:
+            Ends of the panels, shape (panel_count, 2, 2), and the edge of each, ascending.
+        """
+        edges = self._edges / self._scale + self._center
+        place = edges[:, :1] + self._shares[:, :, None] * (edges[:, 1:] - edges[:, :1])
+        ends = np.stack([place[:, :-1], place[:, 1:]], axis=2)
+        return ends.reshape(-1, 2, 2), np.repeat(np.arange(len(edges)), ends.shape[1])
+
     def values(self, points: np.ndarray) -> np.ndarray:
         """Coordinates of points inside or on an edge, shape (point_count, column_count).
 
@@ -69,7 +81,7 @@ class PlaneFit:
         rows, edge, share = np.flatnonzero(on_edge), edge[on_edge], share[on_edge]
         values[rows] = 0.0
         values[rows, self._columns[edge, 0]] = 1.0 - share
-        values[rows, self._columns[edge, 1]] = share
+        values[rows, self._columns[edge, 1]] += share
         return values
 
     def gradients(self, points: np.ndarray) -> np.ndarray:

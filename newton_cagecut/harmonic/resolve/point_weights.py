@@ -16,13 +16,21 @@ class PointWeights:
         gradient_count: Points that have gradients.
         vertex_capacity: Cage vertices that there is room for.
         device: Where to put them.
+        errors: Whether weights have standard errors.
     """
 
     def __init__(
-        self, point_capacity: int, gradient_count: int, vertex_capacity: int, *, device: wp.context.Device
+        self,
+        point_capacity: int,
+        gradient_count: int,
+        vertex_capacity: int,
+        *,
+        device: wp.context.Device,
+        errors: bool = False,
     ) -> None:
         self.weights = wp.zeros((point_capacity, vertex_capacity), dtype=float, device=device)
         self.gradients = wp.zeros((gradient_count, vertex_capacity), dtype=wp.vec3, device=device)
+        self.errors = wp.zeros((point_capacity if errors else 0, vertex_capacity), dtype=float, device=device)
         self.degrees = wp.zeros(point_capacity, dtype=wp.int32, device=device)
         self.lowest = wp.zeros(point_capacity, dtype=float, device=device)
 
@@ -52,8 +60,10 @@ class PointWeights:
 
     def _copied(self, vertex_capacity: int) -> PointWeights:
         (point_capacity, used), gradient_count = self.weights.shape, self.gradients.shape[0]
-        copy = PointWeights(point_capacity, gradient_count, vertex_capacity, device=self.weights.device)
-        for old, array in ((self.weights, copy.weights), (self.gradients, copy.gradients)):
+        device, errors = self.weights.device, self.errors.size > 0
+        copy = PointWeights(point_capacity, gradient_count, vertex_capacity, device=device, errors=errors)
+        for name in ("weights", "gradients", "errors"):
+            old, array = getattr(self, name), getattr(copy, name)
             if old.size:
                 wp.copy(array[:, :used], old)
         wp.copy(copy.degrees, self.degrees)

@@ -33,8 +33,9 @@ import numpy as np
 import warp as wp
 
 from ..launch import launch, launch_blocks
-from .candidates import BLOCK_SIDE, Reach, fill_cells, fill_merged, measure_cells, measure_new
+from .candidates import fill_cells, measure_cells
 from .cells import compacted, copied, single_cell, uniform_cells, with_counts
+from .merging import BLOCK_SIDE, NewTriangles, Reach, fill_merged, measure_new
 from .walls import Walls
 
 _COARSEST = 4
@@ -79,12 +80,16 @@ class CandidateGrid:
         cell_count = len(blocks) * BLOCK_SIDE**3
         counts = wp.empty(cell_count, dtype=wp.int32, device=device)
         reaches = wp.empty(cell_count, dtype=Reach, device=device)
-        new = [wp.array(blocks, dtype=wp.vec3i, device=device), walls.data, first_new]
-        launch_blocks(measure_new, cell_count, [*new, self.cells, self._nearest, reaches, counts], device=device)
+        added = NewTriangles()
+        added.all, added.first, added.wall = walls.data, first_new, int(walls.rows["wall"][first_new])
+        added.blocks = wp.array(blocks, dtype=wp.vec3i, device=device)
+        launch_blocks(measure_new, cell_count, [added, self.cells, self._nearest, reaches, counts], device=device)
         wp.utils.array_scan(counts, counts, inclusive=True)
         cells = copied(self.cells, int(counts[-1:].numpy()[0]))
         grid._nearest = wp.clone(self._nearest)
-        launch_blocks(fill_merged, cell_count, [*new, counts, self.cells, cells, reaches, grid._nearest], device=device)
+        launch_blocks(
+            fill_merged, cell_count, [added, counts, self.cells, cells, reaches, grid._nearest], device=device
+        )
         grid.cells = cells if cells.items.size <= _MOST_GROWTH * self._built_size else compacted(cells)
         return grid
 

@@ -22,17 +22,17 @@ class Line:
     """A line of a plot.
 
     Attributes:
-        label: Its name in the legend; lines of one name have one colour in all panels.
+        label: Its name in the legend.
         x: Abscissae.
         y: Ordinates.
-        dashed: Whether it is drawn dashed, in the colour of the line of the same name without.
+        like: Name of the line whose colour it has, and beside which it is drawn dashed and hollow; its own without.
         marker: Matplotlib's marker.
     """
 
     label: str
     x: Sequence[float]
     y: Sequence[float]
-    dashed: bool = False
+    like: str = ""
     marker: str = "o"
 
 
@@ -84,7 +84,8 @@ def draw(chart: Chart, folder: Path) -> None:
         rows, columns = len(chart.panels), max(map(len, chart.panels))
         figure = Figure(figsize=(4.6 * columns, 3.4 * rows + 0.9), layout="constrained")
         axes = figure.subplots(rows, columns, squeeze=False)
-        labels = list(dict.fromkeys(line.label for row in chart.panels for panel in row for line in panel.lines))
+        lines = [line for row in chart.panels for panel in row for line in panel.lines]
+        labels = list(dict.fromkeys(line.like or line.label for line in lines))
         colors = {label: _COLORS[k % len(_COLORS)] for k, label in enumerate(labels)}
         for place, panel in zip(axes.ravel(), [panel for row in chart.panels for panel in row]):
             _draw_panel(place, panel, colors)
@@ -96,16 +97,16 @@ def draw(chart: Chart, folder: Path) -> None:
 
 def _draw_panel(axes: Axes, panel: Panel, colors: dict[str, str]) -> None:
     for line in panel.lines:
-        label = f"{line.label}, whole" if line.dashed else line.label
+        color = colors[line.like or line.label]
         axes.loglog(
             line.x,
             line.y,
-            f"{line.marker}{'--' if line.dashed else '-'}",
-            color=colors[line.label],
+            f"{line.marker}{'--' if line.like else '-'}",
+            color=color,
             markersize=4,
-            markerfacecolor="white" if line.dashed else colors[line.label],
+            markerfacecolor="white" if line.like else color,
             linewidth=1.2,
-            label=label,
+            label=line.label,
         )
     if panel.floor:
         axes.axhspan(0.0, panel.floor, color="0.85", zorder=0, label="error of the reference")

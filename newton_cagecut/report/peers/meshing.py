@@ -21,16 +21,17 @@ from ...cage import Cage
 
 _FRONT_SHARE = {2: 0.01, 3: 0.2}  # of the longest edge, along the front, by the dimension
 _GRADING = 0.4
+_REGULAR = {2: 0.433, 3: 0.118}  # size of a regular triangle and tetrahedron of edge 1
 
 
-def fill(cage: Cage, swept: Sequence[np.ndarray], front: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
+def fill(cage: Cage, swept: Sequence[np.ndarray], front: np.ndarray, cells: int) -> tuple[np.ndarray, np.ndarray]:
     """Fill a cage with simplices, open along a cut.
 
     Args:
         cage: The cage before the cut.
         swept: What the blade has swept, polygons or in the plane segments, each of shape (corner_count, dimension) [m].
         front: Ends of the front, in the plane the tip, shape (end_count, dimension) [m]; none before the cut.
-        size: Longest edge, relative to the mean edge of the cage.
+        cells: Simplices that would fill the cage if they were regular; small faces and the front bring more.
 
     Returns:
         Nodes, shape (n, dimension) [m], and simplices, shape (m, dimension + 1).
@@ -44,7 +45,7 @@ def fill(cage: Cage, swept: Sequence[np.ndarray], front: np.ndarray, size: float
     netgen.meshing.SetMessageImportance(0)
     low = cage.vertices.min(axis=0)
     scale = float((cage.vertices.max(axis=0) - low).max())
-    size *= _mean_edge(cage) / scale
+    size = _edge(cage, cells) / scale
     shape = _shape(cage, [(polygon - low) / scale for polygon in swept], low, scale)
     _refine(shape, (front - low) / scale, _FRONT_SHARE[cage.dimension] * size)
     try:
@@ -62,10 +63,9 @@ def fill(cage: Cage, swept: Sequence[np.ndarray], front: np.ndarray, size: float
     return low + scale * nodes, simplices
 
 
-def _mean_edge(cage: Cage) -> float:
-    """Mean length of the edges of a cage's faces [m]."""
-    edges = np.concatenate([np.diff(cage.vertices[[*loop, loop[0]]], axis=0) for loop in cage.faces])
-    return float(np.linalg.norm(edges, axis=1).mean())
+def _edge(cage: Cage, cells: int) -> float:
+    """Edge of as many equal simplices as fill the cage [m]."""
+    return float((cage.volume / (_REGULAR[cage.dimension] * cells)) ** (1.0 / cage.dimension))
 
 
 def opened(nodes: np.ndarray, simplices: np.ndarray, sheets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -18,7 +18,7 @@ _NEEDED = ("skfem", "netgen")
 
 
 class ElementsRow:
-    """P1 and P2 elements of several sizes. Their errors are drawn with those of the walks, by ``ErrorRow``."""
+    """P1 and P2 elements, more and more of them. Their errors are drawn with those of the walks, by ``ErrorRow``."""
 
     name = NAME
 
@@ -27,9 +27,9 @@ class ElementsRow:
         if any(importlib.util.find_spec(package) is None for package in _NEEDED):
             return
         for bench in benches:
-            for size in bench.effort.mesh_sizes:
+            for cells in bench.effort.cell_counts:
                 for order in (1, 2):
-                    chosen = {"order": order, "size": size}
+                    chosen = {"order": order, "cells": cells}
                     run = partial(measure_elements, bench, **chosen)
                     yield Measurement(NAME, bench.scene.name, chosen, run)
 
@@ -38,26 +38,27 @@ class ElementsRow:
         yield from ()
 
 
-def measure_elements(bench: Bench, order: int, size: float) -> dict:
+def measure_elements(bench: Bench, order: int, cells: int) -> dict:
     """Measure squared errors and times of elements.
 
     Args:
         bench: The scene.
         order: Degree of the elements, 1 or 2.
-        size: Longest edge, relative to the mean edge of the cage.
+        cells: Simplices that would fill the cage if they were regular.
 
     Returns:
-        For each stage the seconds, those of the mesher, the unknowns and the squared errors; or why it failed.
+        For each stage the seconds, those without the mesher, the unknowns and the squared errors; or why it failed.
     """
-    from ..peers.elements import element_weights
+    from ..peers.elements import element_weights, warm_up
 
+    warm_up()
     found = {}
     for stage in STAGES:
         swept, front = bench.opening(stage)
         cages = (bench.scene.cage, bench.cage(stage))
         try:
             weights, gradients, values = element_weights(
-                cages, swept, front, bench.points, bench.has_gradient, order=order, size=size
+                cages, swept, front, bench.points, bench.has_gradient, order=order, cells=cells
             )
         except (ValueError, RuntimeError) as error:
             found[stage] = {"failed": str(error)}

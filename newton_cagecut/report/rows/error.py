@@ -10,25 +10,28 @@ from time import perf_counter
 import numpy as np
 
 from ...harmonic import HarmonicCoordinates
-from ..bench import STAGES, Bench
+from ..bench import Bench
 
 NAME = "error"
 CORRECTIONS = ("none", "affine", "harmonic")
 KINDS = ("weights", "gradients", "surface")
 
 
-def measure_reference(bench: Bench) -> dict:
-    """Find the references of a scene; return their own squared errors and their checks.
+def measure_reference(bench: Bench, stage: str) -> dict:
+    """Find the reference of a stage; return its own squared errors, its checks, and what it is of.
 
     Args:
         bench: The scene.
+        stage: One of ``STAGES``.
     """
-    cage = bench.scene.cage
-    found = {"faces": cage.face_count, "vertices": cage.vertex_count, "points": len(bench.points)}
-    for stage in STAGES:
-        reference = bench.reference(stage)
-        found[stage] = {"own": reference.own, "check": reference.check.tolist()}
-    return found
+    cage, reference = bench.cage(stage), bench.reference(stage)
+    return {
+        "faces": cage.face_count,
+        "vertices": cage.vertex_count,
+        "points": len(bench.points),
+        "own": reference.own,
+        "check": reference.check.tolist(),
+    }
 
 
 def measure_error(bench: Bench, correction: str, walks: int, seed: int, **options) -> dict:

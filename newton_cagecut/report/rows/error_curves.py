@@ -23,7 +23,7 @@ LABELS = {
 
 @dataclass(frozen=True)
 class Curve:
-    """Root mean square errors and times, a value for each number of walks or size of elements.
+    """Root mean square errors and times, a value for each number of walks or elements.
 
     Attributes:
         label: What it is of.
@@ -72,7 +72,9 @@ def walk_curve(
     return Curve(LABELS[correction], *np.array(found).reshape(-1, 3).T)
 
 
-def element_curve(records: Sequence[Record], scene: str, order: int, stage: str, kind: str) -> Curve:
+def element_curve(
+    records: Sequence[Record], scene: str, order: int, stage: str, kind: str, *, seconds: str = "seconds"
+) -> Curve:
     """Return the curve of the elements of one degree, where they were measured and did not fail.
 
     Args:
@@ -81,14 +83,15 @@ def element_curve(records: Sequence[Record], scene: str, order: int, stage: str,
         order: Their degree.
         stage: "before" or "during".
         kind: "weights", "gradients" or "surface".
+        seconds: "seconds", or "solve_seconds", those without the mesher.
     """
     own = chosen(records, "elements", scene, order=order)
     found = []
-    for size in reversed(values_of(own, "size")):
-        (record,) = (record for record in own if record.parameters["size"] == size)
+    for cells in values_of(own, "cells"):
+        (record,) = (record for record in own if record.parameters["cells"] == cells)
         values = record.values[stage]
         if "failed" not in values:
-            found.append((values["unknowns"], values["seconds"], np.sqrt(values["squared"][kind])))
+            found.append((values["unknowns"], values[seconds], np.sqrt(values["squared"][kind])))
     return Curve(f"finite elements, P{order}", *np.array(found).reshape(-1, 3).T)
 
 

@@ -15,7 +15,7 @@ from ..page.chart import Chart, Line, Panel
 from ..page.markdown import Section, Table, seconds_text
 from .error import CORRECTIONS, KINDS
 from .error import NAME as ERROR
-from .error_curves import Curve, all_curves, walk_curve
+from .error_curves import Curve, all_curves, element_curve, walk_curve
 
 _TITLES = {"before": "before the cut", "during": "half way through the cut"}
 _Y_LABELS = {
@@ -30,8 +30,8 @@ _TEXT = (
     "gradients, relative to the gradients; of where a smooth motion takes it, relative to the cage's diameter. Times "
     "are for all points, from the cage to the weights, kernels compiled before. Half way through the cut, walks are "
     "updated by the last step of 3 % (filled) or all walked again (hollow, dashed), which gives the same weights bit "
-    "for bit; the finite elements are meshed and solved again. Errors near the grey band cannot be told from those of "
-    "the reference."
+    "for bit; the finite elements are meshed and solved again (hollow, dashed: the time without meshing). Errors near "
+    "the grey band cannot be told from those of the reference."
 )
 
 
@@ -57,11 +57,11 @@ def _notes(records: Sequence[Record], scene: str) -> list[str]:
     notes = []
     for record in chosen(records, "reference", scene):
         found = record.values
-        checks = ", ".join(f"{check:.2f}" for stage in STAGES for check in found[stage]["check"])
+        checks = " and ".join(f"{check:.2f}" for check in found["check"])
         notes.append(
-            f"{found['points']} points in a cage of {found['faces']} faces and {found['vertices']} vertices. Squared "
-            f"difference of the reference from plain runs over what both their errors lead to expect, weights and "
-            f"gradients before, then during the cut: {checks} (1 but for chance)."
+            f"{found['points']} points in a cage that has {found['faces']} faces and {found['vertices']} vertices "
+            f"{_TITLES[record.parameters['stage']]}. Squared difference of the reference from plain runs over what "
+            f"both their errors lead to expect: {checks}, of weights and of gradients (1 but for chance)."
         )
     failed = {
         text
@@ -128,12 +128,16 @@ def _chart(records: Sequence[Record], scene: str) -> Chart:
 def _panel(records: Sequence[Record], scene: str, stage: str, kind: str) -> Panel:
     lines = []
     for curve in all_curves(records, scene, stage, kind):
-        marker = "o" if curve.label.startswith("walks") else "s"
-        lines.append(Line(curve.label, curve.seconds.tolist(), curve.errors.tolist(), marker=marker))
+        lines.append(_line(curve, curve.label, marker="o" if curve.label.startswith("walks") else "s"))
     for correction in CORRECTIONS if stage == "during" else ():
         whole = walk_curve(records, scene, correction, stage, kind, seconds="whole_seconds")
-        if not whole.empty:
-            lines.append(Line(whole.label, whole.seconds.tolist(), whole.errors.tolist(), dashed=True))
-    floors = [record.values[stage]["own"][kind] for record in chosen(records, "reference", scene)]
+        lines.append(_line(whole, f"{whole.label}, all again", like=whole.label))
+    solve = element_curve(records, scene, 2, stage, kind, seconds="solve_seconds")
+    lines.append(_line(solve, f"{solve.label}, mesh given", like=solve.label, marker="s"))
+    floors = [record.values["own"][kind] for record in chosen(records, "reference", scene, stage=stage)]
     floor = float(np.sqrt(floors[0])) if floors else None
-    return Panel(_TITLES[stage], "time [s]", _Y_LABELS[kind], lines, floor)
+    return Panel(_TITLES[stage], "time [s]", _Y_LABELS[kind], [line for line in lines if len(line.x)], floor)
+
+
+def _line(curve: Curve, label: str, **options: str) -> Line:
+    return Line(label, curve.seconds.tolist(), curve.errors.tolist(), **options)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from functools import partial
 
-from ..bench import Bench
+from ..bench import STAGES, Bench
 from ..measurement import Measurement, Record
 from ..page.markdown import Section
 from .error import CORRECTIONS, NAME, measure_error, measure_reference
@@ -23,7 +23,9 @@ class ErrorRow:
     def measurements(self, benches: Sequence[Bench]) -> Iterator[Measurement]:
         """See ``Row``."""
         for bench in benches:
-            yield Measurement("reference", bench.scene.name, {}, partial(measure_reference, bench))
+            for stage in STAGES:
+                run = partial(measure_reference, bench, stage)
+                yield Measurement("reference", bench.scene.name, {"stage": stage}, run)
             for walks in bench.effort.walk_counts:
                 for correction in CORRECTIONS:
                     for seed in bench.effort.seeds:

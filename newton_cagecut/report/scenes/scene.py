@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -18,6 +17,7 @@ import numpy as np
 from ...cage import Cage
 from ...section import Blade
 from ..paper.published import PaperRow
+from .script import loaded_script
 
 _TABLE = "benchmarks.report_scenes"  # of a checkout
 _STAGES = (".usd", ".usda", ".usdc", ".usdz")
@@ -97,17 +97,11 @@ def _loaded(name: str, table: Mapping[str, Callable[[], Scene]]) -> Scene:
 
 def _scripted(path: Path) -> Scene:
     """The first cage body that a script builds, cut by its ``blades`` or else across its middle."""
-    if not path.is_file():
-        raise FileNotFoundError(f"there is no script {path}")
     import newton
 
     from ...solver import SolverCageCut
 
-    spec = importlib.util.spec_from_file_location(f"_report_scene_{path.stem}", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    if not callable(getattr(module, "build", None)):
-        raise ValueError(f"{path} has no function build(builder) that adds a cage body to a newton.ModelBuilder")
+    module = loaded_script(path)
     builder = newton.ModelBuilder()
     SolverCageCut.register_custom_attributes(builder)
     module.build(builder)

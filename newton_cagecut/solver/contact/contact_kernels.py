@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import warp as wp
 
-from ..embedding import SurfaceRows, at_surface_point
+from ..body.embedding import SurfaceRows, at_surface_point
 from .contact_arrays import ContactModel, ContactState, SoftContacts, TouchedPoints
 
 wp.set_module_options({"enable_backward": False})

@@ -19,7 +19,7 @@ from . import contact_kernels
 from .contact_arrays import contact_model, contact_state, make_touched_points, soft_contacts
 
 if TYPE_CHECKING:
-    from ..simulated_body import SimulatedBody
+    from ..body.simulated_body import SimulatedBody
 
 
 class ContactTerm:

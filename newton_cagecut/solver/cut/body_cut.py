@@ -19,7 +19,7 @@ from ...cage import CageEdit, Cut
 from ...harmonic import Journal, PointChange, UpdateStats
 from ...section import Blade
 from ...surface import SurfaceCut, SurfaceEdit
-from ..simulated_body import SimulatedBody
+from ..body.simulated_body import SimulatedBody
 from .cut_report import Clock, CutReport
 from .edited_states import checked_states
 from .transfer import Transfer

@@ -16,7 +16,7 @@ import newton
 import warp as wp
 
 from ...harmonic import Journal
-from ..simulated_body import SimulatedBody
+from ..body.simulated_body import SimulatedBody
 from .body_cut import BodyCut
 from .edited_states import checked_states
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import newton
 
-from ..simulated_body import SimulatedBody
+from ..body.simulated_body import SimulatedBody
 
 
 def checked_states(body: SimulatedBody, states: Sequence[newton.State]) -> tuple[newton.State, ...]:

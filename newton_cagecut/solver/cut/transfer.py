@@ -16,7 +16,7 @@ import numpy as np
 import warp as wp
 
 from ...cage import CageEdit
-from ..simulated_body import SimulatedBody
+from ..body.simulated_body import SimulatedBody
 
 _TRANSFER_WALKS = 4096
 _HELD = 0.999

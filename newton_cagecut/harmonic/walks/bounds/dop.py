@@ -158,20 +158,8 @@ def make_dop(axes: np.ndarray, dimension: int, level_type: type) -> BoundsKind:
                 setattr(pieces, name, wp.array(np.array(rows, dtype=np.float32), dtype=float, device=device))
         return pieces
 
-    return BoundsKind(
-        Quantized,
-        Extents,
-        PieceSlabs,
-        empty,
-        extend,
-        quantize,
-        dequantize,
-        merge,
-        load,
-        store,
-        overlaps_any,
-        bound_pieces,
-    )
+    functions = (empty, extend, quantize, dequantize, merge, load, store, overlaps_any)
+    return BoundsKind(Quantized, Extents, PieceSlabs, *functions, bound_pieces)
 
 
 class _Decomposition:

@@ -126,20 +126,8 @@ def make_sphere(dimension: int) -> BoundsKind:
                 result = True
         return result
 
-    return BoundsKind(
-        Quantized,
-        wp.vec4,
-        PieceBoxes,
-        empty,
-        extend,
-        quantize,
-        dequantize,
-        merge,
-        load,
-        store,
-        overlaps_any,
-        _bound_pieces,
-    )
+    functions = (empty, extend, quantize, dequantize, merge, load, store, overlaps_any)
+    return BoundsKind(Quantized, wp.vec4, PieceBoxes, *functions, _bound_pieces)
 
 
 def _bound_pieces(polygons: list[np.ndarray], directions: list[np.ndarray], device: wp.Device) -> PieceBoxes:

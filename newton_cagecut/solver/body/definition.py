@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cage import Cage
-from ..elastic import Material
-from ..surface import Surface
+from ...cage import Cage
+from ...elastic import Material
+from ...surface import Surface
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...cage import Cage
-from ..walls.frame import UnitFrame
+from ....cage import Cage
+from ...walls.frame import UnitFrame
 
 _LEAST_ANGLE = 1.02 * np.pi
 _SHRINK = 0.35

@@ -10,8 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from newton_cagecut.geometry import triangulate
-from newton_cagecut.geometry.holes import bridge_holes, contains_point, signed_area
+from newton_cagecut.geometry import bridge_holes, contains_point, signed_area, triangulate
 
 
 def _join(loops):

@@ -9,7 +9,7 @@ import numpy as np
 import warp as wp
 from scipy.spatial.transform import Rotation
 
-from ..geometry import lifted
+from ...geometry import lifted
 
 _ROUNDING = 1.0e-6
 """Entries of a rotation matrix that are zeros, rounded in float32: planes normal to an axis of the world stay so."""

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
-from ..launch import launch
+from ...launch import launch
 
 wp.set_module_options({"enable_backward": False})
 

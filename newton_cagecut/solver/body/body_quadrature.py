@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..cage import Cage
-from ..elastic import exact_volumes, sample_quadrature
+from ...cage import Cage
+from ...elastic import exact_volumes, sample_quadrature
 
 SPARE_COUNT = 64
 """Spare points that a body which can be cut reserves."""

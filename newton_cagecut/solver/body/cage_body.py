@@ -9,10 +9,10 @@ import newton
 import numpy as np
 import warp as wp
 
-from ..cage import Cage
-from ..elastic import Energy, Material
-from ..harmonic import HarmonicCoordinates
-from ..surface import Surface
+from ...cage import Cage
+from ...elastic import Energy, Material
+from ...harmonic import HarmonicCoordinates
+from ...surface import Surface
 from .body_pieces import BodyPiece, body_pieces
 from .simulated_body import SimulatedBody
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...cage import Cage
-from ..walls.frame import UnitFrame
+from ....cage import Cage
+from ...walls.frame import UnitFrame
 from .bisection import bisect
 from .coverage import uncovered_parts
 from .creases import find_creases

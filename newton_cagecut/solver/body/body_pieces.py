@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cage import pieces_of
+from ...cage import pieces_of
 from .simulated_body import SimulatedBody
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...cage import Cage
+from ....cage import Cage
 
 _NOTHING = 1e-9
 """Share of a face's area below which a part of it is nothing."""

@@ -13,13 +13,13 @@ import newton
 import numpy as np
 import warp as wp
 
-from ..cage import Cage
-from ..elastic import Energy, ReducedSystem
-from ..harmonic import HarmonicCoordinates, Journal
-from ..surface import Surface
+from ...cage import Cage
+from ...elastic import Energy, ReducedSystem
+from ...harmonic import HarmonicCoordinates, Journal
+from ...surface import Surface
+from ..config import Config
+from ..contact.contact_term import ContactTerm
 from .body_quadrature import SPARE_COUNT, BodyQuadrature
-from .config import Config
-from .contact.contact_term import ContactTerm
 from .definition import BodyDefinition
 from .edit_stamps import EditStamps, hold_rows, state_edits
 from .embedding import embed, make_surface_rows

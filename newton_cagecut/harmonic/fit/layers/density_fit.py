@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import warp as wp
 
-from ..launch import launch
+from ...launch import launch
 from .layer_rows import make_layer_rows
 from .solve import LANE, WIDTH, System, lane_count, multiply_lanes
 

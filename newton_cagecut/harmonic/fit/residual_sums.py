@@ -1,0 +1,107 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Sums of tabulated residuals over the landings of walks, a thread a point."""
+
+from functools import cache
+
+import warp as wp
+
+from ..faces.face_tables import FaceTables, plane_point
+from ..walks.landing import KEY_MASK, landing_type, point_functions
+from .layers.solve import LANE
+
+wp.set_module_options({"enable_backward": False})
+
+TERMS = {2: 3, 3: 6}
+"""Terms of a quadratic function: squares and products of hat functions."""
+
+
+@wp.struct
+class ResidualCell:
+    """A panel: the values of its hat functions at a point of its wall's plane are ``base`` + ``slope`` * point."""
+
+    base: wp.vec3d
+    slope: wp.types.matrix(shape=(3, 2), dtype=wp.float64)
+
+
+@wp.struct
+class ResidualTable:
+    """Residuals on all faces.
+
+    The panels of face f are cells ``start[f]`` to ``start[f + 1]``. ``terms`` holds what each term of a cell's
+    quadratic function counts for every cage vertex, the terms of a cell in consecutive rows.
+    """
+
+    start: wp.array[wp.int32]
+    cells: wp.array[ResidualCell]
+    terms: wp.array2d[LANE]
+
+
+@cache
+def make_residual_kernel(dimension: int) -> wp.Kernel:
+    """Make the kernel that sums residuals over the landings of points.
+
+    Args:
+        dimension: 2 or 3.
+    """
+    Landings = landing_type(dimension)
+    to_space = point_functions(dimension)[0]
+
+    @wp.func
+    def hats_at(cell: ResidualCell, x: wp.vec2) -> wp.vec3d:
+        return cell.base + cell.slope * wp.vec2d(wp.float64(x[0]), wp.float64(x[1]))
+
+    @wp.func
+    def least(hats: wp.vec3d) -> wp.float64:
+        if wp.static(dimension == 2):
+            return wp.min(hats[0], hats[1])
+        else:
+            return wp.min(wp.min(hats[0], hats[1]), hats[2])
+
+    @wp.func
+    def cell_at(table: ResidualTable, face: int, x: wp.vec2) -> int:
+        """The cell of a face that a point lies in, or next to."""
+        best = table.start[face]
+        depth = wp.float64(-1.0e300)
+        for cell in range(table.start[face], table.start[face + 1]):
+            own = least(hats_at(table.cells[cell], x))
+            if own > depth:
+                best = cell
+                depth = own
+                if own >= wp.float64(0.0):
+                    break
+        return best
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def sum_residuals(
+        offset: int,
+        points: wp.array[wp.int32],
+        walks: int,
+        first_point: int,
+        faces: FaceTables,
+        landings: Landings,
+        table: ResidualTable,
+        sums: wp.array2d[LANE],
+        squares: wp.array2d[LANE],
+    ):
+        i = offset + wp.tid()
+        for number in range(walks):
+            walk = (points[i] - first_point) * walks + number
+            x = plane_point(faces, (landings.key[walk] & KEY_MASK) // 2, to_space(landings.point[walk]))
+            cell = cell_at(table, landings.face[walk], x)
+            hats = hats_at(table.cells[cell], x)
+            row = cell * wp.static(TERMS[dimension])
+            for lane in range(sums.shape[1]):
+                residual = LANE()
+                for k in range(wp.static(dimension)):
+                    residual += hats[k] * hats[k] * table.terms[row + k, lane]
+                for k in range(wp.static(TERMS[dimension] - dimension)):
+                    product = hats[k] * hats[(k + 1) % wp.static(dimension)]
+                    residual += product * table.terms[row + wp.static(dimension) + k, lane]
+                total = sums[i, lane]
+                sums[i, lane] = total + residual
+                total = squares[i, lane]
+                squares[i, lane] = total + wp.cw_mul(residual, residual)
+
+    return sum_residuals

@@ -1,0 +1,52 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Scenes that commands are given by name: a script with ``build(builder)``, or an example of a checkout."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import newton
+
+from .script import loaded_script
+
+Build = Callable[[newton.ModelBuilder], object]
+
+
+def build_of(name: str, *, walks: int = 64) -> Build:
+    """What adds a scene's bodies to a builder that has the attributes of ``SolverCageCut``.
+
+    Args:
+        name: Path of a script that has a function ``build(builder)``, or the name of an example.
+        walks: Walks a point of an example's bodies.
+
+    Raises:
+        OSError: There is no such script.
+        ValueError: There is no such example, or the script has no ``build``.
+    """
+    path = Path(name)
+    if path.suffix == ".py":
+        return loaded_script(path).build
+    example = Path.cwd() / "examples" / f"{name}.py"
+    if not example.is_file():
+        raise ValueError(
+            f"there is no scene {name!r}: give the path of a script with build(builder), or, in a checkout, the name "
+            "of an example"
+        )
+    if str(Path.cwd()) not in sys.path:
+        sys.path.insert(0, str(Path.cwd()))
+    kind = getattr(importlib.import_module(f"examples.{name}"), "Example", None)
+    if not hasattr(kind, "add_bodies"):
+        raise ValueError(f"{example} is not a scene: it has no Example with add_bodies(builder)")
+
+    def build(builder: newton.ModelBuilder) -> None:
+        scene = object.__new__(kind)  # without a viewer and all else that showing it takes
+        scene.walks = walks
+        scene.add_bodies(builder)
+        builder.add_ground_plane()
+
+    return build

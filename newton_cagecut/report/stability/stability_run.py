@@ -1,0 +1,62 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""A whole run: rows, maps, picture, page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import perf_counter
+
+import warp as wp
+
+from ..machine import machine_of
+from ..scenes.building import build_of
+from .picture import draw
+from .progress import Progress
+from .rows.starts import MODELS
+from .stability_page import PICTURE, Page
+from .sweep import axes, map_name, sweep
+from .table import measure, rows
+from .workbench import Workbench
+
+
+def measure_all(scene: str | None, folder: Path, *, quick: bool) -> int:
+    """Measure, write and print.
+
+    Args:
+        scene: The scene; None for bars.
+        folder: Where to write; it is made if it is not there.
+        quick: Whether it is the quick run.
+
+    Returns:
+        1 if a row is out of its limits, else 0.
+
+    Raises:
+        OSError: The folder cannot be written.
+        ValueError: There is no such scene.
+    """
+    wp.config.log_level = wp.LOG_WARNING
+    start = perf_counter()
+    bench = Workbench(quick=quick, scene=None if scene is None else build_of(scene))
+    folder.mkdir(parents=True, exist_ok=True)
+    young, time_steps = axes(quick=quick)
+    table, results, maps = rows(quick=quick, scene=scene is not None), [], []
+    with Progress(len(table) + len(MODELS) * len(young) * len(time_steps), "stability") as progress:
+        for row in table:
+            results.append(measure(row, bench))
+            progress.advance(row.name)
+        for model in MODELS:
+            maps.append(sweep(bench, model, lambda model=model: progress.advance(map_name(model))))
+    page = Page(
+        settings={"scene": scene, "quick": quick},
+        machine=machine_of(wp.get_device()),
+        results=results,
+        maps=maps,
+        seconds=perf_counter() - start,
+    )
+    draw(maps, folder / PICTURE)
+    page.write(folder)
+    print(page.text())
+    print(f"{folder / 'stability.md'} has the page")
+    return 1 if page.failed else 0

@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Where rows get their bodies from: bars that are built once, or the bodies of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import newton
+import numpy as np
+
+from ...elastic import Material
+from ...solver import SolverCageCut, add_cage_body
+from .shapes import bar_cage, surface_in
+from .trial import Trial
+
+WALKS, QUADRATURE = 64, 60
+BAR = (1.0, 0.2, 0.2)
+CUBE = (0.4, 0.4, 0.4)
+_CONTACT = 1.0e6
+"""Stiffness of the ground under a point [N/m]."""
+
+
+class Workbench:
+    """Makes the bodies of the rows.
+
+    Args:
+        quick: Whether the run is the quick one.
+        scene: Adds the bodies of a scene to a builder; bars without it.
+    """
+
+    def __init__(self, *, quick: bool, scene: Callable[[newton.ModelBuilder], None] | None = None) -> None:
+        self.quick, self.scene = quick, scene
+        self._trials: dict[object, Trial] = {}
+
+    def bar(
+        self,
+        material: Material,
+        *,
+        segments: int = 2,
+        size: tuple[float, float, float] = BAR,
+        gravity: Sequence[float] = (0.0, 0.0, 0.0),
+        fixed: Callable[[np.ndarray], np.ndarray] | None = None,
+        ground: bool = False,
+        cuttable: bool = False,
+        walks: int = WALKS,
+        quadrature: int = QUADRATURE,
+        key: str = "",
+        **options: object,
+    ) -> Trial:
+        """A bar at rest, or as it was added; those that cannot be cut are built once and used again.
+
+        Args:
+            material: Its material.
+            segments: Segments along its length.
+            size: Length, width and height [m].
+            gravity: Gravity [m/s^2].
+            fixed: Tells which vertices, given as (n, 3) [m], are fixed.
+            ground: Whether it falls on a plane, which its surface touches.
+            cuttable: Whether it can be cut.
+            walks: Walks a point.
+            quadrature: Quadrature points.
+            key: Tells bars apart that differ in ``fixed`` or ``options`` only.
+            options: Further options of ``add_cage_body``.
+        """
+        which = (material.model, segments, size, tuple(gravity), ground, walks, quadrature, key)
+        trial = None if cuttable else self._trials.get(which)
+        if trial is None:
+            cage = bar_cage(segments, size)
+            builder = newton.ModelBuilder(gravity=tuple(map(float, gravity)))
+            SolverCageCut.register_custom_attributes(builder)
+            if ground:
+                builder.add_ground_plane(cfg=newton.ModelBuilder.ShapeConfig(ke=_CONTACT, mu=0.5))
+                options.setdefault("contact_radius", 0.01)
+            held = None if fixed is None else fixed(cage.vertices)
+            fields = {"material": material, "walks": walks, "quadrature": quadrature, "cuttable": cuttable}
+            add_cage_body(builder, cage, surface_in(cage), fixed=held, **fields, **options)
+            trial = Trial(builder, collide=ground)
+            trial.model.soft_contact_ke = _CONTACT
+            if not cuttable:
+                self._trials[which] = trial
+        trial.set_material(material)
+        trial.reset()
+        return trial
+
+    def subject(self, material: Material) -> Trial:
+        """The bodies of the scene, or a bar, as they were built, of a material."""
+        if self.scene is None:
+            return self.bar(material)
+        trial = self._trials.get(material.model)
+        if trial is None:
+            builder = newton.ModelBuilder()
+            SolverCageCut.register_custom_attributes(builder)
+            self.scene(builder)
+            rows = builder.custom_attributes["cagecut:definition"].values
+            for index, definition in list(_items(rows)):
+                rows[index] = replace(definition, material=material)
+            trial = self._trials[material.model] = Trial(builder)
+        trial.set_material(material)
+        trial.reset()
+        return trial
+
+
+def _items(rows: object) -> list[tuple[int, object]]:
+    """Index and value of each row that a builder keeps, in a list or a mapping."""
+    return list(rows.items() if hasattr(rows, "items") else enumerate(rows))
