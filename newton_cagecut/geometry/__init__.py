@@ -20,6 +20,7 @@ from .holes import bridge_holes, contains_point, signed_area
 from .lift import lifted
 from .overlaps import edge_pierces, near_pairs, point_touches, segments_meet
 from .polygon_mesh import PolygonMesh
+from .polygon_triangles import polygon_triangles
 from .triangulate import triangulate
 from .vectors import dots, triangle_normals, units
 from .winding import winding_numbers
@@ -45,6 +46,7 @@ __all__ = [
     "nearest_on_triangles",
     "plane_gaps",
     "point_touches",
+    "polygon_triangles",
     "segments_meet",
     "signed_area",
     "simplex_distances",
