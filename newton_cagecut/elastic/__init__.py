@@ -6,7 +6,7 @@
 from .backward_euler import LinearTerm
 from .energy import Energy
 from .material import Material
-from .quadrature import sample_quadrature
+from .quadrature import exact_volumes, sample_quadrature
 from .system import ReducedSystem
 
-__all__ = ["Energy", "LinearTerm", "Material", "ReducedSystem", "sample_quadrature"]
+__all__ = ["Energy", "LinearTerm", "Material", "ReducedSystem", "exact_volumes", "sample_quadrature"]
