@@ -22,7 +22,8 @@ from newton_cagecut.cage import Cage, Cut
 from newton_cagecut.harmonic import launch as launching
 from newton_cagecut.harmonic.fit.boundary_fit import BoundaryFit
 from newton_cagecut.harmonic.fit.face_values import face_values
-from newton_cagecut.harmonic.fit.panels.face_panels import FacePlanes, face_panels
+from newton_cagecut.harmonic.fit.panels import face_panels as panelling
+from newton_cagecut.harmonic.fit.panels.face_panels import FacePlanes, affordable_panels, face_panels
 from newton_cagecut.harmonic.fit.plane_fit import PlaneFit, polygon_edges
 from newton_cagecut.harmonic.walls.frame import UnitFrame
 from newton_cagecut.section import Blade
@@ -242,3 +243,19 @@ def test_scale_and_place_do_not_matter():
     small = Cage(cage.vertices * 1e-3 + 7.0, cage.faces)
     first = fit(cage).values(points, piece)
     np.testing.assert_allclose(fit(small).values(points * 1e-3 + 7.0, piece), first, atol=1e-8)
+
+
+def test_gradings_follow_what_is_affordable(monkeypatch):
+    """Cages of many faces have coarser panels; those of too many are refused, and the text says what else there is."""
+    cage = MAKERS["star_prism"]()
+    frame = UnitFrame.of(cage.vertices)
+    planes = FacePlanes(cage, frame)
+    counts = [len(face_panels(cage, frame, planes, 1.0, grading).face) for grading in panelling.GRADINGS]
+    assert counts == sorted(counts, reverse=True)
+    assert counts[0] > 3 * counts[-1]
+    monkeypatch.setattr(panelling, "_ENOUGH_UNKNOWNS", 2 * counts[-1])
+    assert len(affordable_panels(cage, frame, planes, 1.0).face) < counts[0]
+    monkeypatch.setattr(panelling, "_ENOUGH_UNKNOWNS", 1)
+    monkeypatch.setattr(panelling, "_MOST_UNKNOWNS", 20)
+    with pytest.raises(ValueError, match=r"12 faces has \d+ unknowns, 20 at most: take correction='harmonic'"):
+        affordable_panels(cage, frame, planes, 1.0)

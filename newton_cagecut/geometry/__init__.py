@@ -21,6 +21,7 @@ from .lift import lifted
 from .moments import cone_moments, monomials
 from .overlaps import edge_pierces, near_pairs, point_touches, segments_meet
 from .polygon_mesh import PolygonMesh
+from .polygon_triangles import polygon_triangles
 from .triangulate import triangulate
 from .vectors import dots, triangle_normals, units
 from .winding import winding_numbers
@@ -48,6 +49,7 @@ __all__ = [
     "nearest_on_triangles",
     "plane_gaps",
     "point_touches",
+    "polygon_triangles",
     "segments_meet",
     "signed_area",
     "simplex_distances",

@@ -6,7 +6,7 @@ from .animation import AnimationWriter
 from .body_frame import BodyFrame
 from .layers import checked_path
 from .mesh_data import MeshData
-from .read import read_cage, read_mesh, read_surface
+from .read import read_cage, read_mesh, read_meshes, read_surface
 from .validate import validate_animation
 from .write import write_cage, write_mesh
 
@@ -17,6 +17,7 @@ __all__ = [
     "checked_path",
     "read_cage",
     "read_mesh",
+    "read_meshes",
     "read_surface",
     "validate_animation",
     "write_cage",

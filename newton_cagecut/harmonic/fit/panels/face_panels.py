@@ -17,8 +17,12 @@ from ....cage import Cage
 from ...walls.frame import UnitFrame
 from .bisection import bisect
 from .coverage import uncovered_parts
-from .creases import find_creases
+from .creases import Grading, find_creases
 from .strips import fan_panels, strip_panels
+
+GRADINGS = (Grading(0.35, 1.75), Grading(0.6, 2.5), Grading(1.0, 4.0), Grading(1.0, np.inf))
+"""From fine to coarse; with the last one only long panels are divided."""
+_ENOUGH_UNKNOWNS, _MOST_UNKNOWNS = 1600, 8000
 
 
 class FacePlanes:
@@ -78,7 +82,9 @@ class FacePanels:
     valued: np.ndarray
 
 
-def face_panels(cage: Cage, frame: UnitFrame, planes: FacePlanes, most: float) -> FacePanels:
+def face_panels(
+    cage: Cage, frame: UnitFrame, planes: FacePlanes, most: float, grading: Grading = GRADINGS[0]
+) -> FacePanels:
     """Divide the faces of a cage into panels.
 
     Args:
@@ -86,8 +92,9 @@ def face_panels(cage: Cage, frame: UnitFrame, planes: FacePlanes, most: float) -
         frame: Its unit frame.
         planes: The planes of its faces in the frame.
         most: Greatest length of panels, in the frame.
+        grading: How panels shrink towards creases.
     """
-    creases = find_creases(cage, frame, most)
+    creases = find_creases(cage, frame, most, grading)
     fronted = np.unique(creases.fronts[:, 0]).tolist()
     uncovered = uncovered_parts(cage)
     plain = ~np.isin(cage.triangle_face, fronted)
@@ -133,3 +140,28 @@ def _convex_parts(cage: Cage, planes: FacePlanes, face: int) -> list[np.ndarray]
     loop = np.asarray(cage.faces[face])
     triangles = cage.triangles[cage.triangle_face == face]
     return [polygon[[np.flatnonzero(loop == vertex)[0] for vertex in triangle]] for triangle in triangles]
+
+
+def affordable_panels(cage: Cage, frame: UnitFrame, planes: FacePlanes, most: float) -> FacePanels:
+    """Panels of the finest grading that leaves no more unknowns than a solve is quick for.
+
+    Args:
+        cage: The cage.
+        frame: Its unit frame.
+        planes: The planes of its faces in the frame.
+        most: Greatest length of panels, in the frame.
+
+    Raises:
+        ValueError: There are too many faces for any.
+    """
+    for grading in GRADINGS:
+        panels = face_panels(cage, frame, planes, most, grading)
+        count = len(np.unique(panels.nodes[panels.charged]))
+        if count <= _ENOUGH_UNKNOWNS:
+            return panels
+    if count > _MOST_UNKNOWNS:
+        raise ValueError(
+            f"a fit of this cage of {cage.face_count} faces has {count} unknowns, {_MOST_UNKNOWNS} at most: "
+            "take correction='harmonic'"
+        )
+    return panels
