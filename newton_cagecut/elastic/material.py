@@ -10,7 +10,6 @@ from dataclasses import dataclass, fields
 
 from .constitutive import CONSTITUTIVE_MODELS, ConstitutiveModel, register
 
-
 _LEAST_POISSON = -0.85
 """Below this the neo-Hookean model has a place between rest and a point where a uniform squeeze stays."""
 
