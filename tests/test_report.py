@@ -133,7 +133,8 @@ def test_page_shows_its_figures(report):
         assert f"{part}\n" in text or part in text
     assert "cagecut.HarmonicCoordinates(cage, points, walks=" in text
     assert "![small: error against run time](error_small.png)" in text
-    assert "finite elements, P2" in text
+    for method in ("walks, affine (the paper)", "fit, and walks", "finite elements, P2"):
+        assert method in text
 
 
 def test_records_hold_finite_figures(report):
@@ -155,6 +156,11 @@ def test_records_hold_finite_figures(report):
     records = records_of(found)
     runs = chosen(records, "error", "small", correction="harmonic")
     assert [record.parameters["walks"] for record in runs] == [16, 64]
+    assert [record.parameters["walks"] for record in chosen(records, "error", "small", correction="fitted")] == [
+        0,
+        16,
+        64,
+    ]
     for record in (*runs, *chosen(records, "elements", "small")):
         for stage in ("before", "during"):
             assert record.values[stage]["seconds"] > 0.0

@@ -26,12 +26,17 @@ class ErrorRow:
             for stage in STAGES:
                 run = partial(measure_reference, bench, stage)
                 yield Measurement("reference", bench.scene.name, {"stage": stage}, run)
-            for walks in bench.effort.walk_counts:
-                for correction in CORRECTIONS:
-                    for seed in bench.effort.seeds:
-                        chosen = {"correction": correction, "walks": walks, "seed": seed}
-                        run = partial(measure_error, bench, **chosen)
-                        yield Measurement(NAME, bench.scene.name, chosen, run)
+            for chosen in self._choices(bench):
+                yield Measurement(NAME, bench.scene.name, chosen, partial(measure_error, bench, **chosen))
+
+    @staticmethod
+    def _choices(bench: Bench) -> Iterator[dict]:
+        """The fit without walks, then all corrections with more and more of them."""
+        yield {"correction": "fitted", "walks": 0, "seed": bench.effort.seeds[0]}
+        for walks in bench.effort.walk_counts:
+            for correction in CORRECTIONS:
+                for seed in bench.effort.seeds:
+                    yield {"correction": correction, "walks": walks, "seed": seed}
 
     def sections(self, records: Sequence[Record]) -> Iterator[Section]:
         """See ``Row``."""
