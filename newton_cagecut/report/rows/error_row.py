@@ -11,7 +11,7 @@ from functools import partial
 from ..bench import STAGES, Bench
 from ..measurement import Measurement, Record
 from ..page.markdown import Section
-from .error import CORRECTIONS, NAME, measure_error, measure_reference
+from .error import NAME, WALKED, measure_error, measure_reference
 from .error_pages import error_sections
 
 
@@ -31,10 +31,11 @@ class ErrorRow:
 
     @staticmethod
     def _choices(bench: Bench) -> Iterator[dict]:
-        """The fit without walks, then all corrections with more and more of them."""
-        yield {"correction": "fitted", "walks": 0, "seed": bench.effort.seeds[0]}
+        """The fit with few walks or none, by one seed as it is the same for all; the others with more and more."""
+        for walks in bench.effort.fitted_counts:
+            yield {"correction": "fitted", "walks": walks, "seed": bench.effort.seeds[0]}
         for walks in bench.effort.walk_counts:
-            for correction in CORRECTIONS:
+            for correction in WALKED:
                 for seed in bench.effort.seeds:
                     yield {"correction": correction, "walks": walks, "seed": seed}
 
