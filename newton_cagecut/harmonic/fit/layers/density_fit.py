@@ -19,7 +19,8 @@ import warp as wp
 
 from ...launch import launch
 from .layer_rows import make_layer_rows
-from .solve import LANE, WIDTH, System, lane_count, multiply_lanes
+from .products import LANE, WIDTH, lane_count, multiply_lanes
+from .solve import System
 
 wp.set_module_options({"enable_backward": False})
 
