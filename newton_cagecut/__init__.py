@@ -19,6 +19,7 @@ if TYPE_CHECKING:  # for type checkers; the table says the same to Python
     from .cage import Cage as Cage
     from .cage import CageEdit as CageEdit
     from .cage import Cut as Cut
+    from .elastic import ConstitutiveModel as ConstitutiveModel
     from .elastic import Material as Material
     from .harmonic import HarmonicCoordinates as HarmonicCoordinates
     from .harmonic import UpdateStats as UpdateStats
@@ -44,6 +45,7 @@ _ROOMS = {
     "CageBody": "solver",
     "CageEdit": "cage",
     "Capacity": "solver",
+    "ConstitutiveModel": "elastic",
     "Cut": "cage",
     "CutReport": "solver",
     "HarmonicCoordinates": "harmonic",
