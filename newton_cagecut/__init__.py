@@ -19,6 +19,7 @@ if TYPE_CHECKING:  # for type checkers; the table says the same to Python
     from .cage import Cage as Cage
     from .cage import CageEdit as CageEdit
     from .cage import Cut as Cut
+    from .elastic import ConstitutiveModel as ConstitutiveModel
     from .elastic import Material as Material
     from .files import read_cage as read_cage
     from .files import read_mesh as read_mesh
@@ -46,6 +47,7 @@ _ROOMS = {
     "CageBody": "solver",
     "CageEdit": "cage",
     "Capacity": "solver",
+    "ConstitutiveModel": "elastic",
     "Cut": "cage",
     "CutReport": "solver",
     "HarmonicCoordinates": "harmonic",

@@ -22,7 +22,7 @@ from .config import Config
 from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
-from .plan import PlanEntry, plan_of
+from .plan import PlanEntry, plan_of, plan_of_scene
 from .progress_bars import fraction_bar
 from .viewing import SurfaceViewer
 from .warm_up import warm_up
@@ -269,4 +269,4 @@ class SolverCageCut(newton.solvers.SolverBase):
 
     def plan(self) -> list[PlanEntry]:
         """What the scene uses, what was left out and why, and the bytes of each."""
-        return [entry for body in self._simulated for entry in plan_of(body)]
+        return [entry for body in self._simulated for entry in plan_of(body)] + plan_of_scene(self._stamps)
