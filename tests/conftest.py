@@ -4,10 +4,11 @@
 
 import os
 
-# The matrices of the tests are small: threads of BLAS would spend their time waiting for one another.
+# The matrices of the tests are small: threads of BLAS would spend their time waiting for one another. NumPy, which Warp
+# loads, reads this once.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import warp as wp  # noqa: E402 - NumPy, which it loads, reads the setting above
+import warp as wp
 
 # Nothing here is differentiated by Warp: without adjoints, Newton's kernels compile in half the time.
 wp.config.enable_backward = False
