@@ -11,6 +11,7 @@ import warp as wp
 from cage_shapes import box, prism
 from harmonic_shapes import (
     MAKERS,
+    copies,
     crossing_blade,
     interior_points,
     mean_value,
@@ -170,6 +171,33 @@ def test_cut_cages(name, quads):
     assert not corrected[piece[:, None] != cage.vertex_piece].any()
     assert corrected.min() > -0.05
     assert corrected.max() < 1.02
+
+
+def kinds_of_cuts() -> dict[str, Cut]:
+    """Cuts by a knife of finite width, from a place inside, and along a bend."""
+    origin, down = [0.5, 0.5, 0.5], [0.0, 0.0, -1.0]
+    cuts = {
+        "knife": Cut(box(), Blade(origin, [0, 1, 0], down, width=0.4)),
+        "inside": Cut(box(), Blade(origin, [0, 1, 0], down, width=0.4, start=-0.2)),
+        "bend": Cut(box(), Blade(origin, [0, 1, 0], down)),
+    }
+    cuts["bend"].advance(to=0.4)
+    cuts["bend"].turn([0.5, 0.0, -1.0])
+    for name, depth in (("knife", 0.5), ("inside", 0.35), ("bend", 0.7)):
+        cuts[name].advance(to=depth)
+    return cuts
+
+
+@pytest.mark.parametrize("name", ["knife", "inside", "bend"])
+def test_kinds_of_cuts(name):
+    """With several fronts, fronts all around and walls that meet at an angle, fits and walks agree."""
+    cage = kinds_of_cuts()[name].cage
+    points = points_inside(cage, 10, 1)
+    weights = fit(cage).weights(points, np.zeros(len(points), dtype=int))
+    walked = copies(cage, points, 512, 10, quads="harmonic")[0]
+    error = rms(walked.std(axis=0, ddof=1)) / np.sqrt(10)
+    assert rms(weights - walked.mean(axis=0)) < 1.6 * error
+    assert weights.min() > -0.01
 
 
 def test_pieces_that_came_apart():

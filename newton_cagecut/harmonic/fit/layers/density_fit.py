@@ -19,7 +19,8 @@ import warp as wp
 
 from ...launch import launch
 from .layer_rows import make_layer_rows
-from .solve import LANE, WIDTH, System, lane_count, multiply_lanes
+from .products import LANE, WIDTH, lane_count, multiply_lanes
+from .solve import System
 
 wp.set_module_options({"enable_backward": False})
 
@@ -115,6 +116,9 @@ class DensityFit:
         dipoles: Panels with the boundary values as densities.
         values: Boundary values at ``charges.test_points``, shape (panel_count, 3, column_count).
         device: Where to compute.
+
+    Raises:
+        ValueError: There is no solution.
     """
 
     def __init__(
@@ -151,7 +155,13 @@ class DensityFit:
         self._run(self._kit.layers, points, unknown, known)
         self._apply(test, known, system.first_lane, system.matrix, -1.0)
         self._apply(test, unknown, 0, system.matrix, 1.0)
-        return wp.clone(system.solve())
+        density = wp.clone(system.solve())
+        if not np.isfinite(density.numpy()).all():
+            raise ValueError(
+                "the fit of this cage has no solution: faces of no area, or walls that all but coincide; "
+                "take correction='harmonic'"
+            )
+        return density
 
     def _test(self, charges: ChargePanels, size: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """What the test points count for each node: first item of a node, points and weights, by node and point."""

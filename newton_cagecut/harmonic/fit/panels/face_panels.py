@@ -23,6 +23,8 @@ from .strips import fan_panels, strip_panels
 GRADINGS = (Grading(0.35, 1.75), Grading(0.6, 2.5), Grading(1.0, 4.0), Grading(1.0, np.inf))
 """From fine to coarse; with the last one only long panels are divided."""
 _ENOUGH_UNKNOWNS, _MOST_UNKNOWNS = 1600, 8000
+_FLAT = 1e-9
+"""Height of triangles without area, relative to their longest edges."""
 
 
 class FacePlanes:
@@ -97,8 +99,8 @@ def face_panels(
     creases = find_creases(cage, frame, most, grading)
     fronted = np.unique(creases.fronts[:, 0]).tolist()
     uncovered = uncovered_parts(cage)
-    plain = ~np.isin(cage.triangle_face, fronted)
     vertices = frame.to_unit(cage.vertices)
+    plain = ~np.isin(cage.triangle_face, fronted) & ~_is_flat(vertices[cage.triangles])
     corner = cage.triangle_face[plain][:, None] * cage.vertex_count + cage.triangles[plain]
     corner, number = np.unique(corner, return_inverse=True)
     points, nodes, source = bisect(
@@ -120,6 +122,13 @@ def face_panels(
     corners, nodes, face, charged, valued = zip(*parts)
     nodes = [number + first for number, first in zip(nodes, offset)]
     return FacePanels(*(np.concatenate(column) for column in (corners, nodes, face, charged, valued)))
+
+
+def _is_flat(corners: np.ndarray) -> np.ndarray:
+    """Whether triangles have no area, as some of a face with corners in a row have, shape (triangle_count,)."""
+    edge = np.roll(corners, -1, axis=1) - corners
+    area_vector = np.cross(edge[:, 0], edge[:, 1])
+    return (area_vector**2).sum(axis=1) < (_FLAT * (edge**2).sum(axis=2).max(axis=1)) ** 2
 
 
 def _part(
