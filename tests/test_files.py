@@ -163,6 +163,27 @@ def test_usd_meshes_are_joined_or_chosen(tmp_path):
     assert cagecut.read_cage(tmp_path / "square.usda", scale=2.0).volume == pytest.approx(4.0)
 
 
+@pytest.mark.parametrize("interpolation", ["vertex", "faceVarying"])
+def test_usd_normals_are_kept(tmp_path, interpolation):
+    """Those of a mirrored, stretched and turned mesh go with it, of its points or of its corners."""
+    path = tmp_path / "box.usda"
+    mesh_files.write_usd(path)
+    stage = Usd.Stage.Open(str(path))
+    UsdGeom.SetStageUpAxis(stage, "Y")
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/World/box"))
+    mesh.AddScaleOp().Set(Gf.Vec3f(-1.0, 4.0, 1.0))
+    corners = NORMALS if interpolation == "vertex" else NORMALS[np.ravel(QUADS)]
+    mesh.CreateNormalsAttr([Gf.Vec3f(*map(float, normal)) for normal in corners])
+    mesh.SetNormalsInterpolation(interpolation)
+    stage.Save()
+    surface = cagecut.read_mesh(path, up_axis="Z")
+    expected = NORMALS * [-1.0, 0.25, 1.0]
+    expected = np.column_stack([expected[:, 0], -expected[:, 2], expected[:, 1]])
+    np.testing.assert_allclose(surface.normals, expected / np.linalg.norm(expected, axis=1)[:, None], atol=1e-6)
+    assert surface.point_count == 8
+    assert surface.volume == pytest.approx(24.0)
+
+
 def test_triangles_without_area_by_their_points_are_left_out(tmp_path):
     """A quad with a corner twice gives one triangle."""
     (tmp_path / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2 3\nf 1 1 2\n")

@@ -165,8 +165,9 @@ def _usd_meshes(path: Path, below: str | None, up_axis: str | None) -> list[File
     for data in read_meshes(path, below, up_axis=up_axis):
         counts = np.array([len(face) for face in data.faces], dtype=np.int64)
         indices = np.array([vertex for face in data.faces for vertex in face], dtype=np.int64)
-        mesh = FileMesh(data.name, data.points, counts, indices, data.uvs)
-        meshes.append(mesh if data.corner_uvs is None else split_at_seams(mesh, data.corner_uvs, None))
+        corner_uvs = data.uvs[indices] if data.uvs is not None else data.corner_uvs
+        mesh = FileMesh(data.name, data.points, counts, indices)
+        meshes.append(split_at_seams(mesh, corner_uvs, data.corner_normals))
     return meshes
 
 

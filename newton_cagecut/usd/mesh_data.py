@@ -26,6 +26,7 @@ class MeshData:
         up_axis: ``"Y"`` or ``"Z"``, the axis of ``points`` that points up.
         corner_uvs: Texture coordinates of the faces' corners, face after face, shape ``(corner_count, 2)``, where they
             have seams and so ``uvs`` is ``None``.
+        corner_normals: Normals of the faces' corners, of any length, shape ``(corner_count, 3)``, or ``None``.
     """
 
     points: np.ndarray
@@ -34,6 +35,7 @@ class MeshData:
     name: str = "mesh"
     up_axis: str = "Z"
     corner_uvs: np.ndarray | None = None
+    corner_normals: np.ndarray | None = None
 
     @property
     def triangles(self) -> np.ndarray:
@@ -43,7 +45,13 @@ class MeshData:
 
     def turned(self, up_axis: str) -> MeshData:
         """The mesh rotated about x so that this axis, ``"Y"`` or ``"Z"``, points up."""
-        return replace(self, points=turn_up(self.points, self.up_axis, up_axis), up_axis=up_axis)
+        normals = self.corner_normals
+        return replace(
+            self,
+            points=turn_up(self.points, self.up_axis, up_axis),
+            up_axis=up_axis,
+            corner_normals=None if normals is None else turn_up(normals, self.up_axis, up_axis),
+        )
 
 
 def turn_up(points: np.ndarray, up_axis: str, wanted: str) -> np.ndarray:

@@ -206,16 +206,18 @@ def _read_prim(prim: Usd.Prim, up_axis: str | None) -> MeshData:
     if _rank(placed) < _rank(points):
         raise ValueError(f"{label} is flattened in the world: it, or a prim above it, has a scale of zero")
     uvs, corner_uvs = _texture_coordinates(mesh, len(points), indices)
+    corner_normals = _corner_normals(mesh, len(points), indices, up_axis)
     ends = np.cumsum(counts)
     starts = ends - counts
     left_handed = mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded
     if left_handed != mirrored:
         back = np.repeat(starts + ends - 1, counts) - np.arange(len(indices))
         indices, corner_uvs = indices[back], None if corner_uvs is None else corner_uvs[back]
+        corner_normals = None if corner_normals is None else corner_normals[back]
     corners = indices.tolist()
     faces = tuple(tuple(corners[start:end]) for start, end in zip(starts.tolist(), ends.tolist()))
     own_axis = str(UsdGeom.GetStageUpAxis(prim.GetStage()))
-    return MeshData(placed, faces, uvs, prim.GetName(), up_axis or own_axis, corner_uvs)
+    return MeshData(placed, faces, uvs, prim.GetName(), up_axis or own_axis, corner_uvs, corner_normals)
 
 
 def _arrays(mesh: UsdGeom.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -243,6 +245,28 @@ def _texture_coordinates(
         return (None, values) if seams else (uvs, None)
     warnings.warn(f"{_label(mesh.GetPrim())}: its texture coordinates {_LEFT_OUT}", stacklevel=4)
     return None, None
+
+
+def _corner_normals(
+    mesh: UsdGeom.Mesh, point_count: int, indices: np.ndarray, up_axis: str | None
+) -> np.ndarray | None:
+    """Return the normals of the corners in world space, of any length; ``None`` where there are none or too few."""
+    primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("normals")
+    first = Usd.TimeCode.EarliestTime()
+    if primvar and primvar.HasValue():
+        values, interpolation = primvar.ComputeFlattened(first), primvar.GetInterpolation()
+    else:
+        values, interpolation = mesh.GetNormalsAttr().Get(first), mesh.GetNormalsInterpolation()
+    normals = np.array(values if values else [], dtype=np.float64).reshape(-1, 3)
+    if interpolation in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying) and len(normals) == point_count:
+        normals = normals[indices]
+    elif interpolation != UsdGeom.Tokens.faceVarying or len(normals) != len(indices):
+        return None
+    linear = np.array(mesh.ComputeLocalToWorldTransform(first))[:3, :3]
+    if np.linalg.matrix_rank(linear) < 3:
+        return None
+    own_axis = str(UsdGeom.GetStageUpAxis(mesh.GetPrim().GetStage()))
+    return turn_up(normals @ np.linalg.inv(linear).T, own_axis, up_axis or own_axis)
 
 
 def _rank(points: np.ndarray) -> int:
