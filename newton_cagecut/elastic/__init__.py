@@ -3,10 +3,10 @@
 
 """The elastic body inside a cage: materials, quadrature and the reduced system (paper, section 6.1)."""
 
-from .backward_euler import LinearTerm
+from .backward_euler import LinearTerm, TermScales
 from .energy import Energy
 from .material import Material
 from .quadrature import sample_quadrature
 from .system import ReducedSystem
 
-__all__ = ["Energy", "LinearTerm", "Material", "ReducedSystem", "sample_quadrature"]
+__all__ = ["Energy", "LinearTerm", "Material", "ReducedSystem", "TermScales", "sample_quadrature"]

@@ -16,6 +16,9 @@ from .mass import record_masses
 from .material import Material
 from .plane_confinement import find_normal
 from .stabilization import stabilize
+from .stages.scheme import SCHEMES
+from .stages.stage_integrator import StageIntegrator
+from .stages.step_record import make_step_record
 
 
 class ReducedSystem:
@@ -59,7 +62,10 @@ class ReducedSystem:
         *,
         fixed: wp.array | None = None,
         rotation: wp.array | None = None,
+        piece: wp.array | None = None,
         thickness: float | None = None,
+        integrator: str = "tr_bdf2",
+        newton_iterations: int = 1,
         max_iterations: int = 150,
         tolerance: float = 1.0e-5,
     ):
@@ -68,13 +74,28 @@ class ReducedSystem:
         self.device, self.vertex_capacity, self.point_count = rest.device, rest.shape[0], weights.shape[0]
         self.thickness, self.material = thickness, material
         body = self.arrays = make_body_arrays(
-            rest, weights, gradients, volumes, vertex_count, fixed=fixed, rotation=rotation, plane=self.is_plane
+            rest,
+            weights,
+            gradients,
+            volumes,
+            vertex_count,
+            fixed=fixed,
+            rotation=rotation,
+            piece=piece,
+            plane=self.is_plane,
         )
         self.rest, self.weights, self.gradients, self.volumes = body.rest, body.weights, body.gradients, body.volumes
-        self.vertex_count, self.fixed, self.rotation = body.vertex_count, body.fixed, body.rotation
+        self.vertex_count, self.fixed, self.rotation, self.piece = body.vertex_count, body.fixed, body.rotation, body.piece
         self.mass, self.vertex_mass = body.mass, body.vertex_mass
         self.stabilizing_stiffness, self.stabilizing_mass = body.stabilizing_stiffness, body.stabilizing_mass
-        self._integrator = BackwardEuler(body, material.model, max_iterations=max_iterations, tolerance=tolerance)
+        self.record = make_step_record(self.device, None, None)
+        limits = {"max_iterations": max_iterations, "tolerance": tolerance, "step_record": self.record}
+        if integrator == "paper":
+            self._integrator = BackwardEuler(body, material.model, **limits)
+        else:
+            self._integrator = StageIntegrator(
+                body, material.model, SCHEMES[integrator], newton_iterations=newton_iterations, **limits
+            )
         self._energy = EnergyMeter(body, material.model)
         self._refresh_launches = record_masses(body)
         if self.is_plane:
