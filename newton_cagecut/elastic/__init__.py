@@ -7,6 +7,6 @@ from .backward_euler import LinearTerm, TermScales
 from .energy import Energy
 from .material import Material
 from .quadrature import sample_quadrature
-from .system import ReducedSystem
+from .system import INTEGRATORS, ReducedSystem
 
-__all__ = ["Energy", "LinearTerm", "Material", "ReducedSystem", "TermScales", "sample_quadrature"]
+__all__ = ["INTEGRATORS", "Energy", "LinearTerm", "Material", "ReducedSystem", "TermScales", "sample_quadrature"]

@@ -21,7 +21,7 @@ class BodyArrays:
     vertex_count: wp.array[int]
     """Number of vertices in use, shape (1,)."""
     fixed: wp.array[int]
-    """Nonzero for vertices that keep their velocity, one a vertex."""
+    """Nonzero for vertices that a step does not move, one a vertex."""
     rest: wp.array[wp.vec3]
     """Rest positions, one a vertex [m]."""
     rotation: wp.array[wp.mat33]

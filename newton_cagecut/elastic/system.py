@@ -20,6 +20,9 @@ from .stages.scheme import SCHEMES
 from .stages.stage_integrator import StageIntegrator
 from .stages.step_record import make_step_record
 
+INTEGRATORS = (*SCHEMES, "paper")
+"""Names of the time integrators."""
+
 
 class ReducedSystem:
     """An elastic body whose degrees of freedom are the vertices of its cage.
@@ -39,10 +42,14 @@ class ReducedSystem:
             areas times its thickness.
         material: The material.
         vertex_count: Number of vertices in use, shape (1,) int.
-        fixed: Nonzero for vertices that keep their velocity, shape (vertex_capacity,) int; none if not given.
+        fixed: Nonzero for vertices that a step does not move, shape (vertex_capacity,) int; none if not given.
         rotation: Rotation from the gradients' frame to that of the rest positions, shape (1,) mat33; identity if not
             given.
+        piece: The piece that a vertex belongs to, counted from 0, shape (vertex_capacity,) int; all one if not given.
         thickness: Thickness of a plane body [m]; the body is solid if not given.
+        integrator: One of ``INTEGRATORS``: ``"tr_bdf2"`` or ``"backward_euler"`` (see ``stages/scheme.py``), or
+            ``"paper"`` for the paper's single step.
+        newton_iterations: Linear solves in each stage; the paper's has one.
         max_iterations: Most iterations of a solve.
         tolerance: Factor by which a solve shrinks the preconditioned residual.
 
@@ -161,7 +168,9 @@ class ReducedSystem:
     ) -> None:
         """Advance the vertices by one step; outputs may be the inputs.
 
-        A step that would change F by more than one (Frobenius norm) somewhere is cut to that; see ``limit.py``.
+        A stage's solution is taken as far as the incremental potential of each piece does not rise. A step whose result
+        is not finite is not made: the outputs are the inputs, and ``record`` counts it. The paper's single step is cut
+        instead where it would change F by more than one (Frobenius norm); see ``limit.py``.
 
         Args:
             positions: Positions, shape (vertex_capacity,) vec3 [m].

@@ -100,7 +100,7 @@ def find_centers(body: BodyArrays, stage: StageArrays, pieces: PieceArrays):
             if seen == 0:
                 origin = place
             seen = 1
-            m = wp.float64(body.vertex_mass[i])
+            m = stage.row_mass[i]
             mass += m
             moment += m * (place - origin)
             if body.fixed[i] != 0:

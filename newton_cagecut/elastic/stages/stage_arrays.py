@@ -22,12 +22,16 @@ class StageArrays:
     """Positions at the start of the step [m]."""
     velocity: wp.array[wp.vec3d]
     """Velocities at the start of the step, zero of fixed vertices [m/s]."""
+    row_mass: wp.array[wp.float64]
+    """Sums of the mass matrix's rows, free of their rounding [kg]."""
     reached: wp.array[wp.vec3d]
     """Displacements at the end of the stage before: the shape that this stage turns rigidly for its first guess."""
     target: wp.array[wp.vec3d]
     """Displacements without any force."""
     impulse: wp.array[wp.vec3d]
     """Known forces times the square of the stage's scale [kg m]."""
+    load: wp.array[wp.vec3d]
+    """Weights and further constant forces [N]."""
     guess: wp.array[wp.vec3d]
     """Displacements of the first guess."""
     moved: wp.array[wp.vec3d]
@@ -62,20 +66,25 @@ class PieceArrays:
     """Unit axis that a piece turns about; zero if any is free."""
     freedom: wp.array[wp.vec2i]
     """Whether it may be shifted, and turned."""
+    spin: wp.array[wp.vec3d]
+    """Angular velocity at the start of the step [rad/s]."""
+    spin_rate: wp.array[wp.vec3d]
+    """Its rate, if the piece is rigid [rad/s^2]."""
     rotation: wp.array[wp.mat33d]
     """Rotation of the first guess."""
     shift: wp.array[wp.vec3d]
-    """Shift of the centre in the first guess [m]."""
+    """Shift of the centre in the first guess [m]; before, its acceleration [m/s^2]."""
     factor: wp.array[wp.float64]
-    """Part of the solution that is taken, in [0, 1]."""
+    """Part of the solution that is taken; before, how far the stress at the start is trusted; in [0, 1]."""
 
 
 def make_stage_arrays(body: BodyArrays) -> StageArrays:
     """Scratch for the stages of a body."""
     stage, capacity = StageArrays(), body.rest.shape[0]
     with wp.ScopedDevice(body.rest.device):
-        for name in ("velocity", "reached", "target", "impulse", "guess", "moved", "inertia", "momentum"):
+        for name in ("velocity", "reached", "target", "impulse", "load", "guess", "moved", "inertia", "momentum"):
             setattr(stage, name, wp.zeros(capacity, dtype=wp.vec3d))
+        stage.row_mass = wp.zeros(capacity, dtype=wp.float64)
         for name in ("start", "moved_single", "earlier_velocity", "force", "product", "position_out", "velocity_out"):
             setattr(stage, name, wp.zeros(capacity, dtype=wp.vec3))
     return stage
@@ -86,7 +95,8 @@ def make_piece_arrays(body: BodyArrays) -> PieceArrays:
     pieces, capacity = PieceArrays(), body.rest.shape[0]
     with wp.ScopedDevice(body.rest.device):
         pieces.mass, pieces.factor = (wp.zeros(capacity, dtype=wp.float64) for _ in range(2))
-        pieces.center, pieces.axis, pieces.shift = (wp.zeros(capacity, dtype=wp.vec3d) for _ in range(3))
+        for name in ("center", "axis", "shift", "spin", "spin_rate"):
+            setattr(pieces, name, wp.zeros(capacity, dtype=wp.vec3d))
         pieces.freedom = wp.zeros(capacity, dtype=wp.vec2i)
         pieces.rotation = wp.zeros(capacity, dtype=wp.mat33d)
     return pieces

@@ -12,7 +12,7 @@ from ..arrays import BodyArrays, make_linear_system, make_step_arrays
 from ..backward_euler import LinearTerm, Motion, TermScales
 from ..conjugate_gradient import ConjugateGradient
 from ..launching import record
-from . import rigid_fit, stage_kernels, step_record
+from . import rigid_fit, stage_kernels, start_forces, start_limit, step_record
 from .line_search import LineSearch
 from .scheme import Stage
 from .stage_arrays import make_piece_arrays, make_stage_arrays
@@ -52,7 +52,7 @@ class StageIntegrator:
             model, body, self.arrays, self.stage, self.pieces, self.system, step_record=self.record
         )
         self._newton_iterations, self._tolerance = newton_iterations, tolerance
-        self._vertex_capacity = body.rest.shape[0]
+        self._vertex_capacity, self._point_count = body.rest.shape[0], body.volumes.shape[0]
         self._no_forces = wp.zeros(self._vertex_capacity, dtype=wp.vec3, device=self.device)
         self._record_launches(model)
 
@@ -71,6 +71,11 @@ class StageIntegrator:
         loads = [gravity, self._no_forces if forces is None else forces]
         self._begin_record.launch()
         self._launch(stage_kernels.begin_stages, [*before, *loads, body, arrays, stage, self.record])
+        for launch in self._spin_launches:
+            launch.launch()
+        wp.launch(start_limit.find_changes, dim=self._point_count, inputs=[dt, body, arrays], device=self.device)
+        self._choose_limits.launch()
+        self._limit_velocities.launch()
         for factors in self.scheme:
             self._make_stage(factors, dt, loads, term)
         scale = wp.float64(self.scheme[-1].scale * dt)
@@ -89,7 +94,11 @@ class StageIntegrator:
         self._strain.launch()
         targets = [factors.target_velocity * dt, factors.target_reached, factors.velocity_kept]
         targets += [factors.velocity_reached / dt, factors.force_share * scale * scale]
-        self._launch(stage_kernels.begin_stage, [*map(wp.float64, targets), *loads, body, arrays, stage])
+        self._launch(stage_kernels.begin_stage, [*map(wp.float64, targets), *loads, body, stage])
+        self._find_centers.launch()
+        if factors.start_share:
+            for launch in self._start_launches:
+                launch.launch()
         for launch in self._guess_launches:
             launch.launch()
         for iteration in range(self._newton_iterations):
@@ -134,12 +143,27 @@ class StageIntegrator:
         """Prepare the launches whose arguments never change."""
         body, step, stage, pieces, system = self.body, self.arrays, self.stage, self.pieces, self.system
         search, device, count = self.solver.search, self.device, self._vertex_capacity
-        points = body.volumes.shape[0]
+        points = self._point_count
         strain = step_kernels.make_strain_kernel(model, body.normal is not None)
         self._strain = record(strain, points, [body, step], device)
         moving = [body, stage, pieces]
+        started = [body, step, stage, pieces]
+        self._find_centers = record(rigid_fit.find_centers, count, moving, device)
+        self._spin_launches = (
+            self._find_centers,
+            record(start_forces.find_spins, count, moving, device),
+            record(start_limit.fit_spins, count, moving, device),
+            record(start_limit.find_relative, count, started, device),
+        )
+        limits = [body, step, pieces, self.record]
+        self._choose_limits = record(start_limit.choose_limits, count, limits, device)
+        self._limit_velocities = record(start_limit.limit_velocities, count, started, device)
+        self._start_launches = (
+            record(start_forces.find_spins, count, moving, device),
+            record(start_forces.fit_accelerations, count, started, device),
+            record(start_forces.add_start_forces, count, started, device),
+        )
         self._guess_launches = (
-            record(rigid_fit.find_centers, count, moving, device),
             record(rigid_fit.find_momenta, count, moving, device),
             record(rigid_fit.fit_motions, count, moving, device),
             record(rigid_fit.move_rigidly, count, moving, device),

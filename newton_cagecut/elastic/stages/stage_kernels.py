@@ -44,6 +44,7 @@ def begin_stages(
     """Where a step starts from."""
     i = wp.tid()
     velocity = wp.vec3d()
+    row_mass = wp.float64(0.0)
     if i < body.vertex_count[0]:
         if not (is_finite(positions[i]) and is_finite(velocities[i])):
             wp.atomic_max(record.reason, 0, BAD_START)
@@ -51,6 +52,9 @@ def begin_stages(
             wp.atomic_max(record.reason, 0, BAD_FORCE)
         if body.fixed[i] == 0:
             velocity = confined(wp.vec3d(velocities[i]), body)
+        for j in range(body.vertex_count[0]):
+            row_mass += wp.float64(body.mass[i, j])
+    stage.row_mass[i] = row_mass
     stage.start[i] = positions[i]
     stage.velocity[i] = velocity
     stage.reached[i] = wp.vec3d()
@@ -78,26 +82,19 @@ def begin_stage(
     gravity: wp.array[wp.vec3],
     forces: wp.array[wp.vec3],
     body: BodyArrays,
-    step: StepArrays,
     stage: StageArrays,
 ):
-    """Targets and known impulses of a stage."""
+    """Targets of a stage, and the impulses of its loads."""
     i = wp.tid()
     target, earlier, impulse = wp.vec3d(), wp.vec3d(), wp.vec3d()
     if i < body.vertex_count[0]:
         v, reached = stage.velocity[i], stage.reached[i]
         target = target_velocity * v + target_reached * reached
         earlier = velocity_kept * v + velocity_reached * reached
-        weight = wp.float64(body.vertex_mass[i]) * wp.vec3d(gravity[0])
-        impulse = force_scale * confined(weight + wp.vec3d(forces[i]), body)
-        if step.scales[3] != wp.float64(0.0):
-            internal = wp.vec3d()
-            for q in range(body.volumes.shape[0]):
-                internal -= wp.vec3d(step.tensions[q] * body.gradients[q, i])
-            if body.stabilizing_stiffness[i, i] > 0.0:
-                stiffness = body.material[0][0] * step.scales[0]
-                internal -= stiffness * wp.vec3d(tie(i, step.displacement, body))
-            impulse += step.scales[3] * confined(internal, body)
+        weight = stage.row_mass[i] * wp.vec3d(gravity[0])
+        load = confined(weight + wp.vec3d(forces[i]), body)
+        impulse = force_scale * load
+        stage.load[i] = load
     stage.target[i] = target
     stage.earlier_velocity[i] = wp.vec3(earlier)
     stage.impulse[i] = impulse
