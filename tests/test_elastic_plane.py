@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.spatial.transform import Rotation
 
-from elastic_bodies import DT, Body, Spring, as_array
+from elastic_bodies import Body, Spring, as_array
 
 MODELS = ("neo_hookean", "stvk")
 ROUNDING = 2.0**-22

@@ -7,6 +7,16 @@ from .backward_euler import LinearTerm, TermScales
 from .energy import Energy
 from .material import Material
 from .quadrature import sample_quadrature
+from .stages.step_record import COUNT_NAMES as STEP_COUNTS
 from .system import INTEGRATORS, ReducedSystem
 
-__all__ = ["INTEGRATORS", "Energy", "LinearTerm", "Material", "ReducedSystem", "TermScales", "sample_quadrature"]
+__all__ = [
+    "STEP_COUNTS",
+    "INTEGRATORS",
+    "Energy",
+    "LinearTerm",
+    "Material",
+    "ReducedSystem",
+    "TermScales",
+    "sample_quadrature",
+]

@@ -76,9 +76,7 @@ class BackwardEuler:
         tolerance: Factor by which a solve shrinks the preconditioned residual.
     """
 
-    def __init__(
-        self, body: BodyArrays, model: str, *, max_iterations: int, tolerance: float, step_record: StepRecord
-    ):
+    def __init__(self, body: BodyArrays, model: str, *, max_iterations: int, tolerance: float, step_record: StepRecord):
         self.device, self.is_plane = body.rest.device, body.normal is not None
         self.body, self.arrays = body, make_step_arrays(body)
         self.system = make_linear_system(body.vertex_count, body.fixed, body.normal)

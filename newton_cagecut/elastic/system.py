@@ -18,7 +18,7 @@ from .plane_confinement import find_normal
 from .stabilization import stabilize
 from .stages.scheme import SCHEMES
 from .stages.stage_integrator import StageIntegrator
-from .stages.step_record import make_step_record
+from .stages.step_record import make_step_record, read_counts
 
 INTEGRATORS = (*SCHEMES, "paper")
 """Names of the time integrators."""
@@ -92,7 +92,12 @@ class ReducedSystem:
             plane=self.is_plane,
         )
         self.rest, self.weights, self.gradients, self.volumes = body.rest, body.weights, body.gradients, body.volumes
-        self.vertex_count, self.fixed, self.rotation, self.piece = body.vertex_count, body.fixed, body.rotation, body.piece
+        self.vertex_count, self.fixed, self.rotation, self.piece = (
+            body.vertex_count,
+            body.fixed,
+            body.rotation,
+            body.piece,
+        )
         self.mass, self.vertex_mass = body.mass, body.vertex_mass
         self.stabilizing_stiffness, self.stabilizing_mass = body.stabilizing_stiffness, body.stabilizing_mass
         self.record = make_step_record(self.device, None, None)
@@ -184,6 +189,16 @@ class ReducedSystem:
         """
         before, after = Motion(positions, velocities), Motion(positions_out, velocities_out)
         self._integrator.step(before, after, dt, gravity=gravity, forces=forces, term=term)
+
+    def step_statistics(self) -> dict[str, object]:
+        """What the steps were like, read on the host; the paper's single step is not recorded.
+
+        ``steps`` in all, of which ``refused``: their result was not finite (``reason``), so they were not made;
+        ``limited``: a solution was not taken whole, or velocities were too wild for the step; ``stalled``: a solution
+        was not taken at all; ``missed``: a solve ended short of the tolerance. ``iterations`` of the last step's
+        solves and ``most_iterations`` of any; ``residual`` and ``worst_residual``: the factors by which solves shrank it.
+        """
+        return read_counts(self.record.counts.numpy(), self.record.residuals.numpy())
 
     def energy(self, positions: wp.array, velocities: wp.array) -> Energy:
         """Energies of a state, read on the host: for reports, not for captured code.

@@ -17,8 +17,8 @@ import warp as wp
 from ..arrays import BodyArrays, LinearSystem, StepArrays
 from ..constitutive import CONSTITUTIVE_MODELS
 from ..launching import record
-from ..stiffness import apply_stiffness
 from ..step_kernels import gather, make_deformation_function
+from ..stiffness import apply_stiffness
 from .stage_arrays import PieceArrays, StageArrays
 from .step_record import StepRecord
 

@@ -88,9 +88,7 @@ class StageIntegrator:
         body, arrays, stage = self.body, self.arrays, self.stage
         scale = factors.scale * dt
         scales = [scale, factors.damping_share, factors.start_share]
-        wp.launch(
-            stage_kernels.set_scales, dim=1, inputs=[*map(wp.float64, scales), body, arrays], device=self.device
-        )
+        wp.launch(stage_kernels.set_scales, dim=1, inputs=[*map(wp.float64, scales), body, arrays], device=self.device)
         self._strain.launch()
         targets = [factors.target_velocity * dt, factors.target_reached, factors.velocity_kept]
         targets += [factors.velocity_reached / dt, factors.force_share * scale * scale]

@@ -8,8 +8,8 @@ from __future__ import annotations
 import warp as wp
 
 from ..arrays import BodyArrays, LinearSystem, StepArrays
-from ..stiffness import vertex_block
 from ..step_kernels import tie
+from ..stiffness import vertex_block
 from .stage_arrays import PieceArrays, StageArrays
 from .step_record import BAD_FORCE, BAD_RESULT, BAD_START, StepRecord
 
@@ -63,7 +63,9 @@ def begin_stages(
 
 
 @wp.kernel(enable_backward=False)
-def set_scales(scale: wp.float64, damping_share: wp.float64, start_share: wp.float64, body: BodyArrays, step: StepArrays):
+def set_scales(
+    scale: wp.float64, damping_share: wp.float64, start_share: wp.float64, body: BodyArrays, step: StepArrays
+):
     """The factors of a stage; see ``Stage``."""
     damping = damping_share * body.material[0][2]
     step.scales[0] = scale * scale
