@@ -4,8 +4,8 @@
 """Cages with harmonic coordinates that can be cut while they move, as a solver for Newton.
 
 The rooms, from the bottom up: ``geometry``, ``section``, ``cage``, ``harmonic``, ``surface``, ``elastic``, ``usd``,
-``wrap``, ``solver``, ``report``. The names here are the public ones. The method is "Fast Cutting of Cage Based
-Deformation with Walk on Spheres"; bit-identical updates and harmonic control variates go past it.
+``files``, ``wrap``, ``solver``, ``report``. The names here are the public ones. The method is "Fast Cutting of Cage
+Based Deformation with Walk on Spheres"; bit-identical updates and harmonic control variates go past it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,10 @@ if TYPE_CHECKING:  # for type checkers; the table says the same to Python
     from .cage import Cage as Cage
     from .cage import CageEdit as CageEdit
     from .cage import Cut as Cut
+    from .elastic import ConstitutiveModel as ConstitutiveModel
     from .elastic import Material as Material
+    from .files import read_cage as read_cage
+    from .files import read_mesh as read_mesh
     from .harmonic import HarmonicCoordinates as HarmonicCoordinates
     from .harmonic import UpdateStats as UpdateStats
     from .section import Blade as Blade
@@ -44,6 +47,7 @@ _ROOMS = {
     "CageBody": "solver",
     "CageEdit": "cage",
     "Capacity": "solver",
+    "ConstitutiveModel": "elastic",
     "Cut": "cage",
     "CutReport": "solver",
     "HarmonicCoordinates": "harmonic",
@@ -53,6 +57,8 @@ _ROOMS = {
     "Surface": "surface",
     "UpdateStats": "harmonic",
     "add_cage_body": "solver",
+    "read_cage": "files",
+    "read_mesh": "files",
     "wrap_cage": "wrap",
 }
 

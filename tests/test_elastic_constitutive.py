@@ -3,6 +3,7 @@
 """Tests of the constitutive models against finite differences and their invariants."""
 
 import functools
+import itertools
 
 import hypothesis.extra.numpy as hnp
 import numpy as np
@@ -10,9 +11,13 @@ import pytest
 import warp as wp
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
+from elastic_bodies import Body
+from newton_cagecut.elastic import ConstitutiveModel, Material
 from newton_cagecut.elastic.constitutive import CONSTITUTIVE_MODELS
+from newton_cagecut.elastic.constitutive.model import cofactor
 from newton_cagecut.elastic.stiffness import Stiffness, apply_stiffness, make_stiffness_function, vertex_block
 
 MU, LAM = 2.0, 3.0
@@ -31,6 +36,8 @@ def make_probe(model, plane):
 
     @wp.kernel(enable_backward=False, module="unique")
     def probe(
+        mu: wp.float64,
+        lam: wp.float64,
         F: wp.array[wp.mat33d],
         directions: wp.array[wp.mat33],
         gradient: wp.vec3,
@@ -40,7 +47,6 @@ def make_probe(model, plane):
         blocks: wp.array[wp.mat33],
     ):
         i = wp.tid()
-        mu, lam = wp.float64(MU), wp.float64(LAM)
         energies[i] = energy(F[i], mu, lam)
         stresses[i] = stress(F[i], mu, lam)
         stiffness = stiffness_function(F[i], mu, lam, wp.float64(1.0))
@@ -54,13 +60,13 @@ def make_probe(model, plane):
 GRADIENT = np.array([0.3, -0.7, 0.5])
 
 
-def evaluate(model, F, plane=False):
+def evaluate(model, F, plane=False, mu=MU, lam=LAM):
     """Energies (n,), stresses (n, 3, 3), projected Hessians (n, 9, 9) and vertex blocks (n, 3, 3)."""
     F = np.asarray(F, dtype=np.float64).reshape(-1, 3, 3)
     n = len(F)
     outputs = (wp.zeros(n, dtype=wp.float64, device="cpu"), wp.zeros(n, dtype=wp.mat33d, device="cpu"))
     outputs += (wp.zeros((n, 9), dtype=wp.mat33, device="cpu"), wp.zeros(n, dtype=wp.mat33, device="cpu"))
-    inputs = [wp.array(F, dtype=wp.mat33d, device="cpu")]
+    inputs = [wp.float64(mu), wp.float64(lam), wp.array(F, dtype=wp.mat33d, device="cpu")]
     inputs += [wp.array(np.eye(9).reshape(9, 3, 3), dtype=wp.mat33, device="cpu"), wp.vec3(*GRADIENT)]
     wp.launch(make_probe(model, plane), dim=n, inputs=inputs, outputs=outputs, device="cpu")
     energies, stresses, products, blocks = (a.numpy() for a in outputs)
@@ -90,7 +96,7 @@ def kept_hessians(model, F):
     """The Hessians that the stiffness is made from: without what tension adds to them in the neo-Hookean model."""
     hessians = true_hessians(model, F)
     if model == "neo_hookean":
-        tension = np.maximum((LAM + MU) * (np.linalg.det(F) - 1.0) - MU, 0.0)
+        tension = np.maximum((LAM + 5.0 / 6.0 * MU) * (np.linalg.det(F) - 1.0) - MU, 0.0)
         hessians -= tension[:, None, None] * difference(cofactors, F)
     return hessians
 
@@ -108,6 +114,15 @@ def random_gradients(count=60):
     return F
 
 
+def smooth(model, F):
+    """Those at which the model is smooth: the rotation nearest to F, of the corotational one, is not always unique."""
+    if model != "corotational":
+        return F
+    values = np.linalg.svd(F, compute_uv=False) * [1.0, 1.0, 1.0]
+    values[:, 2] *= np.sign(np.linalg.det(F))
+    return F[values[:, 1] + values[:, 2] > 1e-3]
+
+
 def as_plane(F):
     """Deformation gradients whose third row and column are the identity's."""
     return np.eye(3) + PLANE * (F - np.eye(3))
@@ -116,7 +131,7 @@ def as_plane(F):
 @pytest.mark.parametrize("model", MODELS)
 def test_stress_is_derivative_of_energy(model):
     """The stress is the finite difference of the energy density, inverted and flat states included."""
-    F, h = random_gradients(), 1e-5
+    F, h = smooth(model, random_gradients()), 1e-5
     steps = h * np.eye(9).reshape(9, 3, 3)
     energy = evaluate(model, np.stack([F[:, None] + steps, F[:, None] - steps]))[0].reshape(2, len(F), 9)
     expected = (energy[0] - energy[1]) / (2.0 * h)
@@ -127,13 +142,13 @@ def test_stress_is_derivative_of_energy(model):
 @pytest.mark.parametrize("model", MODELS)
 def test_projected_hessian_is_nearest_positive_semidefinite(model, plane):
     """The projected Hessian is the kept one, or its part in the plane, with negative eigenvalues set to zero."""
-    F = as_plane(random_gradients()) if plane else random_gradients()
+    F = as_plane(random_gradients()) if plane else smooth(model, random_gradients())
     true, projected = kept_hessians(model, F), evaluate(model, F, plane)[2]
     if plane:
         true *= np.outer(PLANE, PLANE)
     values, vectors = np.linalg.eigh(0.5 * (true + true.transpose(0, 2, 1)))
     expected = np.einsum("nij,nj,nkj->nik", vectors, np.maximum(values, 0.0), vectors)
-    scale = np.abs(true).max(axis=(1, 2), keepdims=True)
+    scale = np.maximum(np.abs(true).max(axis=(1, 2), keepdims=True), 1e-3 * MU)
     assert np.all(np.abs(projected - expected) < 2e-5 * scale)
     definite = values[:, 5 if plane else 0] > 1e-6
     assert 3 < definite.sum() < len(F) - 10
@@ -193,7 +208,7 @@ def test_small_strain_is_linear_elasticity(model):
 @pytest.mark.parametrize("model", MODELS)
 def test_objectivity_and_isotropy(model):
     """Rotating the world rotates the stress, rotating the material too; the energy does not change."""
-    F = random_gradients()
+    F = smooth(model, random_gradients())
     R = Rotation.random(len(F), rng=np.random.default_rng(1)).as_matrix()
     energy, stress, *_ = evaluate(model, F)
     turned, turned_stress, *_ = evaluate(model, R @ F)
@@ -205,3 +220,104 @@ def test_objectivity_and_isotropy(model):
 def test_stiffness_is_compact():
     """A quadrature point's stiffness is kept in 33 floats, not in 81 of the full matrix."""
     assert wp.types.type_size_in_bytes(Stiffness) == 33 * 4
+
+
+def test_small_strains_have_the_given_moduli():
+    """A small pull gives back Young's modulus and Poisson's ratio, from -0.8 to 0.499, with every model."""
+    for model, poisson in itertools.product(MODELS, (-0.8, -0.3, 0.0, 0.3, 0.499)):
+        mu, lam = Material(young=1.0, poisson=poisson).lame
+        strain = 1e-6 * np.diag([1.0, -poisson, -poisson])
+        stress = evaluate(model, np.eye(3) + strain, mu=mu, lam=lam)[1][0]
+        np.testing.assert_allclose(stress, 1e-6 * np.diag([1.0, 0.0, 0.0]), atol=1e-10 * max(1.0, lam))
+
+
+@pytest.mark.parametrize("poisson", [-0.85, -0.3, 0.0, 0.1, 0.3, 0.4, 0.49])
+def test_crushed_neo_hookean_state_is_no_place_to_stay(poisson):
+    """A point has more energy than rest, and a uniform squeeze is driven back from any size, in the plane too."""
+    mu, lam = Material(young=1.0, poisson=poisson).lame
+    sizes = np.concatenate([np.geomspace(1e-4, 0.99, 60), np.geomspace(1.01, 30.0, 20)])
+    for dimension in (2, 3):
+        direction = np.diag([1.0, 1.0, float(dimension == 3)])
+        F = np.eye(3) + (sizes[:, None, None] - 1.0) * direction
+        pull = np.einsum("nij,ij->n", evaluate("neo_hookean", F, mu=mu, lam=lam)[1], direction)
+        assert np.all(pull * (sizes - 1.0) > 0.0)
+        assert evaluate("neo_hookean", np.eye(3) - direction, mu=mu, lam=lam)[0][0] > 0.0
+
+
+@pytest.mark.parametrize("poisson", [-0.5, 0.0, 0.4])
+def test_neo_hookean_is_free_of_stress_at_rest_only(poisson):
+    """From random F a descent of the energy ends at a rotation; no other F is free of stress."""
+    mu, lam = Material(young=1.0, poisson=poisson).lame
+    starts = np.random.default_rng(0).normal(size=(25, 9))
+
+    def objective(flat):
+        energy, stress, *_ = evaluate("neo_hookean", flat, mu=mu, lam=lam)
+        return energy[0], stress[0].ravel()
+
+    for start in starts:
+        F = minimize(objective, start, jac=True, method="BFGS", options={"gtol": 1e-9}).x.reshape(3, 3)
+        np.testing.assert_allclose(F.T @ F, np.eye(3), atol=1e-5)
+        assert np.linalg.det(F) > 0.0
+
+
+@wp.func
+def plain_energy(F: wp.mat33d, mu: wp.float64, lam: wp.float64) -> wp.float64:
+    """A user's own energy: the stable neo-Hookean one without the logarithm."""
+    change = wp.determinant(F) - wp.float64(1.0)
+    half = wp.float64(0.5)
+    return half * mu * (wp.ddot(F, F) - wp.float64(3.0)) - mu * change + half * (lam + mu) * change * change
+
+
+@wp.func
+def plain_stress(F: wp.mat33d, mu: wp.float64, lam: wp.float64) -> wp.mat33d:
+    """Its derivative."""
+    return mu * F + ((lam + mu) * (wp.determinant(F) - wp.float64(1.0)) - mu) * cofactor(F)
+
+
+@wp.func
+def soft_stress(F: wp.mat33d, mu: wp.float64, lam: wp.float64) -> wp.mat33d:
+    """Not its derivative."""
+    return mu * F + ((lam + wp.float64(0.5) * mu) * (wp.determinant(F) - wp.float64(1.0)) - mu) * cofactor(F)
+
+
+@wp.func
+def plain_block(s: wp.vec3d, mu: wp.float64, lam: wp.float64) -> wp.mat33d:
+    """Its second derivatives by the stretches."""
+    area = wp.vec3d(s[1] * s[2], s[2] * s[0], s[0] * s[1])
+    shear = ((lam + mu) * (s[0] * s[1] * s[2] - wp.float64(1.0)) - mu) * s
+    zero = wp.float64(0.0)
+    block = mu * wp.identity(3, dtype=wp.float64) + (lam + mu) * wp.outer(area, area)
+    return block + wp.mat33d(zero, shear[2], shear[1], shear[2], zero, shear[0], shear[1], shear[0], zero)
+
+
+@wp.func
+def constant_block(s: wp.vec3d, mu: wp.float64, lam: wp.float64) -> wp.mat33d:
+    """Right at rest only."""
+    ones = wp.vec3d(wp.float64(1.0), wp.float64(1.0), wp.float64(1.0))
+    return wp.float64(2.0) * mu * wp.identity(3, dtype=wp.float64) + lam * wp.outer(ones, ones)
+
+
+def test_own_model_moves_a_body():
+    """A user's model of energy, stress and block is checked, kept by name, and moves a body as it says."""
+    model = ConstitutiveModel(name="plain", energy=plain_energy, stress=plain_stress, stretch_block=plain_block)
+    assert Material(model=model).model == Material(model=model).model == Material(model="plain").model == "plain"
+    body = Body(3, cells=(1, 1, 2), points=2, fix_top=True, young=2e4, damping=0.02, model="plain")
+    other = Body(3, cells=(1, 1, 2), points=2, fix_top=True, young=2e4, damping=0.02)
+    for hung in (body, other):
+        hung.run(100, 0.1 * hung.gravity)
+    assert body.heights.min() == pytest.approx(other.heights.min(), rel=0.02)
+    assert body.heights.min() < -1e-3
+
+
+def test_wrong_models_are_refused():
+    """A stress or a block that is not the derivative, and a name that is taken, are refused with the place."""
+    parts = {"energy": plain_energy, "stress": plain_stress, "stretch_block": plain_block}
+    with pytest.raises(ValueError, match="'soft' has a wrong stress: it must be the derivative of energy"):
+        Material(model=ConstitutiveModel(name="soft", **{**parts, "stress": soft_stress}))
+    with pytest.raises(ValueError, match="wrong stretch_block: it must be the derivative of stress. At F = "):
+        Material(model=ConstitutiveModel(name="flat", **{**parts, "stretch_block": constant_block}))
+    with pytest.raises(ValueError, match="another constitutive model named 'stvk'"):
+        Material(model=ConstitutiveModel(name="stvk", **parts))
+    with pytest.raises(TypeError, match="must be a name or a ConstitutiveModel"):
+        Material(model=plain_energy)
+    assert "soft" not in CONSTITUTIVE_MODELS

@@ -77,3 +77,17 @@ def test_stiff_hung_body_hardly_moves(dimension):
         body = Body(dimension, (1, 1, 2), 2, young=1e10, density=density, fix_top=True)
         body.run(60, body.gravity, dt=dt)
         assert np.abs(body.positions - body.rest).max() < 1e-5
+
+
+@both_dimensions
+@pytest.mark.parametrize("poisson", [-0.3, 0.0, 0.3, 0.4])
+def test_squeezed_body_recovers(dimension, poisson):
+    """A neo-Hookean body that is squeezed to a tenth in all directions comes back to its size."""
+    body = Body(dimension, (1, 1, 2), 2, young=1e5, poisson=poisson, damping=0.01)
+    center = body.rest.mean(axis=0)
+    squeezed = center + 0.1 * (body.rest - center)
+    start = body.place(positions=squeezed + body.random(3, 1e-4)).energy()
+    body.run(240)
+    assert body.system.energy(body.x, body.v).elastic < 1e-3 * start
+    sizes = [np.linalg.norm(points - points.mean(axis=0), axis=1) for points in (body.positions, body.rest)]
+    np.testing.assert_allclose(sizes[0], sizes[1], rtol=0.02)

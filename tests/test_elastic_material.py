@@ -26,7 +26,7 @@ def test_defaults_are_neo_hookean_and_frozen():
 
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("young", 0.0), ("young", float("nan")), ("poisson", 0.5), ("poisson", -1.0), ("density", -1.0)]
+    [("young", 0.0), ("young", float("nan")), ("poisson", 0.5), ("poisson", -1.0), ("poisson", -0.9), ("density", -1.0)]
     + [("damping", -0.1), ("damping", float("inf")), ("model", "corotated")],
 )
 def test_out_of_range_is_refused(field, value):
@@ -39,3 +39,10 @@ def test_wrong_type_is_refused():
     """A constant that is no number is refused."""
     with pytest.raises(TypeError, match="Material young"):
         Material(young="stiff")
+
+
+def test_strongly_auxetic_material_is_refused_with_a_way_out():
+    """A Poisson's ratio at which the neo-Hookean body could stay squeezed is refused; other models take it."""
+    with pytest.raises(ValueError, match="squeezed body can stay squeezed. Use 'corotational'"):
+        Material(poisson=-0.86)
+    assert Material(poisson=-0.86, model="corotational").lame[1] < 0.0

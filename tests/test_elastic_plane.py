@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from elastic_bodies import Body, Spring, as_array
 
-MODELS = ("neo_hookean", "stvk")
+MODELS = ("neo_hookean", "stvk", "corotational")
 ROUNDING = 2.0**-22
 UPRIGHT = Rotation.from_euler("x", 90, degrees=True).as_matrix()
 TILTED = Rotation.from_rotvec([0.4, 1.0, -0.6]).as_matrix()
@@ -24,8 +24,13 @@ def plane_energy_density(material, F):
     if material.model == "stvk":
         E = 0.5 * (F.T @ F - np.eye(2))
         return mu * np.sum(E * E) + 0.5 * lam * np.trace(E) ** 2
-    J = np.linalg.det(F)
-    return 0.5 * mu * (np.sum(F * F) - 2.0) - mu * (J - 1.0) + 0.5 * (lam + mu) * (J - 1.0) ** 2
+    if material.model == "corotational":
+        angle = np.arctan2(F[1, 0] - F[0, 1], F[0, 0] + F[1, 1])
+        R = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        return mu * np.sum((F - R) ** 2) + 0.5 * lam * np.trace(R.T @ F - np.eye(2)) ** 2
+    J, square = np.linalg.det(F), np.sum(F * F) + 1.0
+    density = 2.0 / 3.0 * mu * (square - 3.0 - np.log((square + 1.0) / 4.0))
+    return density - mu * (J - 1.0) + 0.5 * (lam + 5.0 / 6.0 * mu) * (J - 1.0) ** 2
 
 
 def plane_stress(material, F):
@@ -57,10 +62,11 @@ def test_stretched_rectangle_has_the_analytic_energy(model):
         body.place(positions=body.to_world(body.vertices * [1.0, stretch]))
         strain = 0.5 * (stretch**2 - 1.0)
         density = {
-            "neo_hookean": 0.5 * mu * (stretch**2 - 1.0)
+            "neo_hookean": 2.0 / 3.0 * mu * (2.0 * strain - np.log1p(0.5 * strain))
             - mu * (stretch - 1.0)
-            + 0.5 * (lam + mu) * (stretch - 1.0) ** 2,
+            + 0.5 * (lam + 5.0 / 6.0 * mu) * (stretch - 1.0) ** 2,
             "stvk": (mu + 0.5 * lam) * strain**2,
+            "corotational": (mu + 0.5 * lam) * (stretch - 1.0) ** 2,
         }[model]
         assert body.system.energy(body.x, body.v).elastic == pytest.approx(body.volume * density, rel=1e-5)
 

@@ -3,19 +3,24 @@
 """Tests of the quadrature points, in the plane and in space."""
 
 import itertools
+import math
+import time
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+import newton_cagecut as cagecut
+from cage_shapes import box, voxels
 from newton_cagecut.cage import boundary_distances
 from newton_cagecut.elastic import sample_quadrature
-from newton_cagecut.elastic.quadrature import _dense_inside
+from newton_cagecut.elastic.quadrature.dense import dense_inside
 from newton_cagecut.geometry import simplex_distances
-from plane_shapes import PLANES
+from newton_cagecut.solver.body.body_quadrature import BodyQuadrature
+from plane_shapes import PLANES, square
 
-QUADS = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
+QUADS = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
 BOX_SIMPLICES = {
     2: np.array([[0, 2], [2, 3], [3, 1], [1, 0]]),
     3: np.concatenate([QUADS[:, [0, 1, 2]], QUADS[:, [0, 2, 3]]]),
@@ -163,7 +168,7 @@ def test_dense_sample_is_inside_and_even(dimension):
         volume=outer.volume - inner.volume,
         contains=lambda points: outer.contains(points @ tilt.T) & ~inner.contains(points @ tilt.T),
     )
-    points = _dense_inside(hollow, 4000, np.random.default_rng(0))
+    points = dense_inside(hollow, 4000, np.random.default_rng(0))
     assert hollow.contains(points).all()
     assert len(points) == pytest.approx(3 * 4000, rel=0.01)
     beyond = points @ tilt.T > high
@@ -202,3 +207,69 @@ def test_bad_arguments_are_refused():
     for sheet in (make_box([0, 0], [10.0, 0.01]), make_box([0, 0, 0], [10.0, 10.0, 0.01])):
         with pytest.raises(ValueError, match="too thin for 4 quadrature points"):
             sample_quadrature(sheet, 4)
+
+
+@both_dimensions
+@pytest.mark.parametrize("count", [8, 300])
+def test_linear_and_quadratic_functions_are_exact(cage, count):
+    """Mass and centre of mass are exact to rounding, and with enough points inertia too."""
+    points, volumes = sample_quadrature(cage, count, seed=5)
+    middle, size = 0.5 * (cage.low + cage.high), cage.high - cage.low
+    relative = (points - middle) / size
+    np.testing.assert_allclose(volumes @ relative, 0.0, atol=1e-13 * cage.volume)
+    assert volumes.sum() == pytest.approx(cage.volume, rel=1e-13)
+    if count > 100:
+        second = np.einsum("q,qi,qj->ij", volumes, relative, relative)
+        np.testing.assert_allclose(second, cage.volume / 12.0 * np.eye(len(size)), atol=1e-13 * cage.volume)
+        assert volumes.min() > 0.2 * cage.volume / count
+
+
+def test_two_thousand_points_take_a_moment():
+    """Two thousand points in an L of many faces take some tenths of a second."""
+    cage = voxels([(i, j, k) for i in range(6) for j in range(2) for k in range(6) if i < 2 or k < 2], np.full(3, 0.1))
+    start = time.process_time()
+    points, _ = sample_quadrature(cage, 2000, seed=1)
+    assert len(points) == 2000
+    assert time.process_time() - start < 1.0
+
+
+@pytest.mark.parametrize("name", PLANES)
+def test_every_piece_has_its_mass_and_centre(name):
+    """Pieces of concave, holed and nested plane cages have their area and centre of area to rounding."""
+    cage = PLANES[name]()
+    quadrature = BodyQuadrature.sampled(cage, 150, spare_count=0, seed=3, thickness=0.5)
+    assert_pieces_are_exact(cage, quadrature)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_pieces_of_a_cut_have_their_mass_and_centre(dimension):
+    """After cuts that take off a sliver and a half, each piece has its own volume and centre to rounding."""
+    cage = square() if dimension == 2 else box()
+    quadrature = BodyQuadrature.sampled(cage, 60, spare_count=32, seed=3, thickness=None)
+    for offset, slope in ((0.05, 0.02), (0.55, 0.3)):
+        if dimension == 2:
+            blade = cagecut.Blade([offset, 0.5], [slope, -1.0])
+        else:
+            blade = cagecut.Blade([offset, 0.5, 0.5], [0.1, 1.0, 0.1], [slope, 0.0, -1.0])
+        cut = cagecut.Cut(cage, blade)
+        cage = cut.advance(to=cut.length).cage
+        quadrature = quadrature.distributed(cage, lambda points, cage=cage: boundary_distances(cage, points))
+        assert_pieces_are_exact(cage, quadrature)
+    assert cage.piece_count == 3
+    assert quadrature.used_count > 60
+
+
+def assert_pieces_are_exact(cage, quadrature):
+    """Each piece's points have its volume and centre, and positive volumes."""
+    points, volumes = quadrature.points[: quadrature.used_count], quadrature.volumes[: quadrature.used_count]
+    piece = cage.piece_of(points)
+    assert volumes.min() > 0.0
+    corners = cage.vertices[cage.simplices]
+    cones = np.linalg.det(corners) / math.factorial(cage.dimension)
+    owner = cage.face_piece[cage.simplex_face]
+    for index, volume in enumerate(cage.piece_volumes):
+        own, sides = piece == index, owner == index
+        thick_volume = quadrature.thickness * volume
+        assert volumes[own].sum() == pytest.approx(thick_volume, rel=1e-12)
+        centre = cones[sides] @ corners[sides].sum(axis=1) / ((cage.dimension + 1) * volume)
+        np.testing.assert_allclose(volumes[own] @ points[own] / thick_volume, centre, atol=1e-12 * cage.diameter)

@@ -23,9 +23,12 @@ def static_positions(body):
         u[free] = flat.reshape(-1, body.dimension)
         F = body.deformation(u)
         J = np.linalg.det(F)
-        density = 0.5 * mu * (np.einsum("qcd,qcd->q", F, F) - 3.0) - mu * (J - 1.0) + 0.5 * (lam + mu) * (J - 1.0) ** 2
+        square, bulk = np.einsum("qcd,qcd->q", F, F), lam + 5.0 / 6.0 * mu
+        density = 2.0 / 3.0 * mu * (square - 3.0 - np.log((square + 1.0) / 4.0))
+        density += 0.5 * bulk * (J - 1.0) ** 2 - mu * (J - 1.0)
         cofactor = J[:, None, None] * np.linalg.inv(F).transpose(0, 2, 1)
-        P = mu * F + ((lam + mu) * (J - 1.0) - mu)[:, None, None] * cofactor
+        P = 4.0 / 3.0 * mu * (square / (square + 1.0))[:, None, None] * F
+        P += (bulk * (J - 1.0) - mu)[:, None, None] * cofactor
         force = np.einsum("q,qcd,qjd->jc", body.volumes, P, body.gradients) - loads
         return body.volumes @ density - (loads * u).sum(), force[free].ravel()
 

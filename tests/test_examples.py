@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import warp as wp
+from newton._src.viewer.kernels import compact
 from PIL import Image
 
 from examples import __main__ as dispatcher
@@ -13,6 +15,13 @@ from newton_cagecut import Blade, Cage
 from newton_cagecut.usd import validate_animation
 
 FAST = ["--viewer", "null", "--quiet", "--test", "--walks", "16", "--pace", "8"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def compact_for_all_types():
+    """Newton's viewer kernels compile once, and not once more for each type that a generic one is called with."""
+    for dtype in (wp.vec3, wp.float32):
+        wp.overload(compact, {"src": wp.array(dtype=dtype), "dst": wp.array(dtype=dtype)})
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> CutScene | None:

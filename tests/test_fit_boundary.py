@@ -11,6 +11,7 @@ import warp as wp
 from cage_shapes import box, prism
 from harmonic_shapes import (
     MAKERS,
+    copies,
     crossing_blade,
     interior_points,
     mean_value,
@@ -22,7 +23,8 @@ from newton_cagecut.cage import Cage, Cut
 from newton_cagecut.harmonic import launch as launching
 from newton_cagecut.harmonic.fit.boundary_fit import BoundaryFit
 from newton_cagecut.harmonic.fit.face_values import face_values
-from newton_cagecut.harmonic.fit.panels.face_panels import FacePlanes, face_panels
+from newton_cagecut.harmonic.fit.panels import face_panels as panelling
+from newton_cagecut.harmonic.fit.panels.face_panels import FacePlanes, affordable_panels, face_panels
 from newton_cagecut.harmonic.fit.plane_fit import PlaneFit, polygon_edges
 from newton_cagecut.harmonic.walls.frame import UnitFrame
 from newton_cagecut.section import Blade
@@ -171,6 +173,33 @@ def test_cut_cages(name, quads):
     assert corrected.max() < 1.02
 
 
+def kinds_of_cuts() -> dict[str, Cut]:
+    """Cuts by a knife of finite width, from a place inside, and along a bend."""
+    origin, down = [0.5, 0.5, 0.5], [0.0, 0.0, -1.0]
+    cuts = {
+        "knife": Cut(box(), Blade(origin, [0, 1, 0], down, width=0.4)),
+        "inside": Cut(box(), Blade(origin, [0, 1, 0], down, width=0.4, start=-0.2)),
+        "bend": Cut(box(), Blade(origin, [0, 1, 0], down)),
+    }
+    cuts["bend"].advance(to=0.4)
+    cuts["bend"].turn([0.5, 0.0, -1.0])
+    for name, depth in (("knife", 0.5), ("inside", 0.35), ("bend", 0.7)):
+        cuts[name].advance(to=depth)
+    return cuts
+
+
+@pytest.mark.parametrize("name", ["knife", "inside", "bend"])
+def test_kinds_of_cuts(name):
+    """With several fronts, fronts all around and walls that meet at an angle, fits and walks agree."""
+    cage = kinds_of_cuts()[name].cage
+    points = points_inside(cage, 10, 1)
+    weights = fit(cage).weights(points, np.zeros(len(points), dtype=int))
+    walked = copies(cage, points, 512, 10, quads="harmonic")[0]
+    error = rms(walked.std(axis=0, ddof=1)) / np.sqrt(10)
+    assert rms(weights - walked.mean(axis=0)) < 1.6 * error
+    assert weights.min() > -0.01
+
+
 def test_pieces_that_came_apart():
     """The halves of a box that was cut in two are boxes, whose trilinear coordinates both have."""
     cage = box()
@@ -242,3 +271,19 @@ def test_scale_and_place_do_not_matter():
     small = Cage(cage.vertices * 1e-3 + 7.0, cage.faces)
     first = fit(cage).values(points, piece)
     np.testing.assert_allclose(fit(small).values(points * 1e-3 + 7.0, piece), first, atol=1e-8)
+
+
+def test_gradings_follow_what_is_affordable(monkeypatch):
+    """Cages of many faces have coarser panels; those of too many are refused, and the text says what else there is."""
+    cage = MAKERS["star_prism"]()
+    frame = UnitFrame.of(cage.vertices)
+    planes = FacePlanes(cage, frame)
+    counts = [len(face_panels(cage, frame, planes, 1.0, grading).face) for grading in panelling.GRADINGS]
+    assert counts == sorted(counts, reverse=True)
+    assert counts[0] > 3 * counts[-1]
+    monkeypatch.setattr(panelling, "_ENOUGH_UNKNOWNS", 2 * counts[-1])
+    assert len(affordable_panels(cage, frame, planes, 1.0).face) < counts[0]
+    monkeypatch.setattr(panelling, "_ENOUGH_UNKNOWNS", 1)
+    monkeypatch.setattr(panelling, "_MOST_UNKNOWNS", 20)
+    with pytest.raises(ValueError, match=r"12 faces has \d+ unknowns, 20 at most: take correction='harmonic'"):
+        affordable_panels(cage, frame, planes, 1.0)

@@ -9,7 +9,8 @@ import pytest
 import warp as wp
 
 from newton_cagecut.harmonic import launch as launching
-from newton_cagecut.harmonic.fit.layers.solve import LANE, WIDTH, System, lane_count, multiply_lanes
+from newton_cagecut.harmonic.fit.layers.products import LANE, WIDTH, lane_count, multiply_lanes
+from newton_cagecut.harmonic.fit.layers.solve import System
 from newton_cagecut.harmonic.launch import launch
 
 CPU = wp.get_device("cpu")

@@ -29,6 +29,7 @@ TINY = Effort(
     name="tiny",
     point_count=16,
     walk_counts=(16, 64),
+    fitted_counts=(0, 16),
     seeds=(1,),
     reference_runs=2,
     reference_walks=128,
@@ -133,7 +134,8 @@ def test_page_shows_its_figures(report):
         assert f"{part}\n" in text or part in text
     assert "cagecut.HarmonicCoordinates(cage, points, walks=" in text
     assert "![small: error against run time](error_small.png)" in text
-    assert "finite elements, P2" in text
+    for method in ("walks, affine (the paper)", "fit, and walks", "finite elements, P2"):
+        assert method in text
 
 
 def test_records_hold_finite_figures(report):
@@ -155,7 +157,9 @@ def test_records_hold_finite_figures(report):
     records = records_of(found)
     runs = chosen(records, "error", "small", correction="harmonic")
     assert [record.parameters["walks"] for record in runs] == [16, 64]
-    for record in (*runs, *chosen(records, "elements", "small")):
+    fits = chosen(records, "error", "small", correction="fitted")
+    assert [record.parameters["walks"] for record in fits] == [0, 16]
+    for record in (*runs, *fits, *chosen(records, "elements", "small")):
         for stage in ("before", "during"):
             assert record.values[stage]["seconds"] > 0.0
             assert set(record.values[stage]["squared"]) == set(error.KINDS)

@@ -7,7 +7,7 @@ import pytest
 from pxr import Gf, Sdf, Usd, UsdGeom
 
 from newton_cagecut.cage import Cage
-from newton_cagecut.usd import read_cage, read_mesh, read_surface, write_cage, write_mesh
+from newton_cagecut.usd import read_cage, read_mesh, read_meshes, read_surface, write_cage, write_mesh
 
 BOX = np.array([[x, y, z] for z in (0.0, 1.0) for y in (0.0, 2.0) for x in (0.0, 3.0)])
 BOX_FACES = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (1, 3, 7, 5), (3, 2, 6, 7), (2, 0, 4, 6))
@@ -142,6 +142,31 @@ def test_texture_seams_are_left_out_with_a_warning():
         assert read_mesh(stage).uvs is None
 
 
+def test_all_meshes_are_read_with_their_seams():
+    """Two meshes, one of them mirrored, and each corner keeps its texture coordinate."""
+    stage = stage_with_box()
+    mesh = add_box(stage, "/World/mirrored")
+    mesh.AddScaleOp().Set(Gf.Vec3f(-1.0, 1.0, 1.0))
+    st = UsdGeom.PrimvarsAPI(mesh).CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.faceVarying)
+    st.Set([Gf.Vec2f(corner % 4, vertex) for corner, vertex in enumerate(v for face in BOX_FACES for v in face)])
+    box, mirrored = read_meshes(stage)
+    assert (box.name, mirrored.name, box.corner_uvs) == ("box", "mirrored", None)
+    np.testing.assert_array_equal(mirrored.corner_uvs[:, 1], np.ravel(mirrored.faces))
+    np.testing.assert_array_equal(mirrored.corner_uvs[:4, 0], [3, 2, 1, 0])
+
+
+@pytest.mark.parametrize("scale", [(0.0, 0.0, 0.0), (1.0, 0.0, 1.0)])
+def test_zero_scales_are_named(scale):
+    """A parent that flattens a mesh is an error with the mesh in it; a mesh that is flat itself is none."""
+    stage = stage_with_box()
+    UsdGeom.Xform.Define(stage, "/World").AddScaleOp().Set(Gf.Vec3f(*scale))
+    with pytest.raises(ValueError, match=r"mesh /World/box of .* has a scale of zero"):
+        read_mesh(stage)
+    UsdGeom.Xformable(stage.GetPrimAtPath("/World")).ClearXformOpOrder()
+    stage.GetPrimAtPath("/World/box").GetAttribute("points").Set([Gf.Vec3f(*map(float, p)) for p in BOX * [1, 1, 0]])
+    assert read_mesh(stage).points[:, 2].max() == 0.0
+
+
 def test_missing_prim_lists_the_meshes():
     """A path that is not there is answered with those that are."""
     with pytest.raises(ValueError, match=r"has no prim /World/bax; its meshes: /World/box"):
@@ -188,7 +213,7 @@ def test_files_that_cannot_be_read(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"no such USD file: .*none.usda"):
         read_mesh(tmp_path / "none.usda")
     (tmp_path / "text.usda").write_text("not USD")
-    with pytest.raises(ValueError, match=r"text.usda cannot be read as USD"):
+    with pytest.raises(ValueError, match=r"text.usda cannot be read as USD: it is damaged, cut short, or no USD file$"):
         read_mesh(tmp_path / "text.usda")
 
 

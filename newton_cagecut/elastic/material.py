@@ -8,8 +8,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 
-MODELS = ("neo_hookean", "stvk")
-"""Names of the constitutive models."""
+from .constitutive import CONSTITUTIVE_MODELS, ConstitutiveModel, register
+
+_LEAST_POISSON = -0.85
+"""Below this the neo-Hookean model has a place between rest and a point where a uniform squeeze stays."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,22 +20,25 @@ class Material:
 
     Args:
         young: Young's modulus [Pa].
-        poisson: Poisson's ratio, in (-1, 0.5).
+        poisson: Poisson's ratio, in (-1, 0.5), of the neo-Hookean model at least -0.85; negative for a material that
+            widens when it is pulled.
         density: Rest density [kg/m^3].
         damping: Rayleigh damping proportional to the stiffness [s].
-        model: ``"neo_hookean"`` (stable, recovers from inversion) or ``"stvk"`` (Saint Venant-Kirchhoff, the
-            paper's, which inverts under strong compression).
+        model: ``"neo_hookean"`` (recovers from being inverted or crushed), ``"stvk"`` (Saint Venant-Kirchhoff, the
+            paper's, which inverts under strong compression), ``"corotational"`` (linear in the stretches), or a
+            :class:`ConstitutiveModel`, whose derivatives are checked, and of which the name is kept. Of all of them
+            small strains are exactly those of Young's modulus and Poisson's ratio.
 
     Raises:
-        TypeError: If a constant is not a number.
-        ValueError: If a constant is out of its range or the model is unknown.
+        TypeError: If a constant is not a number, or the model neither a name nor a model.
+        ValueError: If a constant is out of its range, the model is unknown, or its derivatives are wrong.
     """
 
     young: float = 1.0e5
     poisson: float = 0.4
     density: float = 1000.0
     damping: float = 0.0
-    model: str = "neo_hookean"
+    model: str | ConstitutiveModel = "neo_hookean"
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -46,12 +51,23 @@ class Material:
                 f"Material poisson is {self.poisson}; it must lie in (-1, 0.5). Use 0.49 for a nearly "
                 "incompressible material."
             )
+        if self.model == "neo_hookean" and self.poisson < _LEAST_POISSON:
+            raise ValueError(
+                f"Material poisson is {self.poisson}; with the model 'neo_hookean' it must be at least "
+                f"{_LEAST_POISSON}, below which a squeezed body can stay squeezed. Use 'corotational'."
+            )
         if self.density <= 0.0:
             raise ValueError(f"Material density is {self.density} kg/m^3; it must be positive.")
         if self.damping < 0.0:
             raise ValueError(f"Material damping is {self.damping} s; it must not be negative.")
-        if self.model not in MODELS:
-            raise ValueError(f"Material model is {self.model!r}; choose one of {', '.join(map(repr, MODELS))}.")
+        if isinstance(self.model, ConstitutiveModel):
+            register(self.model)
+            object.__setattr__(self, "model", self.model.name)
+        if not isinstance(self.model, str):
+            raise TypeError(f"Material model is {self.model!r}; it must be a name or a ConstitutiveModel.")
+        if self.model not in CONSTITUTIVE_MODELS:
+            names = ", ".join(map(repr, CONSTITUTIVE_MODELS))
+            raise ValueError(f"Material model is {self.model!r}; choose one of {names}, or give a ConstitutiveModel.")
 
     @property
     def lame(self) -> tuple[float, float]:

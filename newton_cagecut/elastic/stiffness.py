@@ -18,6 +18,7 @@ import functools
 import warp as wp
 
 from .constitutive import CONSTITUTIVE_MODELS
+from .constitutive.decomposition import decompose, decompose_plane
 
 wp.set_module_options({"enable_backward": False})
 
@@ -56,28 +57,6 @@ def clamp_modes(modes: wp.vec3d) -> wp.vec3d:
     return wp.vec3d(wp.max(modes[0], zero), wp.max(modes[1], zero), wp.max(modes[2], zero))
 
 
-@wp.func
-def turn(angle: wp.float64) -> wp.mat33d:
-    """Rotation about the third axis."""
-    c, s, zero = wp.cos(angle), wp.sin(angle), wp.float64(0.0)
-    return wp.mat33d(c, -s, zero, s, c, zero, zero, zero, wp.float64(1.0))
-
-
-@wp.func
-def decompose_plane(F: wp.mat33d):
-    """Rotations U and V about the third axis and signed stretches s with F = U diag(s) V^T, of a plane F.
-
-    In closed form: Warp's ``svd2`` (1.19) returns the identity's for F = -I.
-    """
-    half = wp.float64(0.5)
-    turned = wp.vec2d(half * (F[0, 0] + F[1, 1]), half * (F[1, 0] - F[0, 1]))
-    mirrored = wp.vec2d(half * (F[0, 0] - F[1, 1]), half * (F[1, 0] + F[0, 1]))
-    difference, total = wp.atan2(turned[1], turned[0]), wp.atan2(mirrored[1], mirrored[0])
-    mean, half_gap = wp.length(turned), wp.length(mirrored)
-    stretches = wp.vec3d(mean + half_gap, mean - half_gap, wp.float64(1.0))
-    return turn(half * (total + difference)), stretches, turn(half * (total - difference))
-
-
 @functools.cache
 def make_stiffness_function(model: str, plane: bool) -> wp.Function:
     """The function (F, mu, lam, scale) -> projected stiffness times scale, of one constitutive model.
@@ -86,14 +65,16 @@ def make_stiffness_function(model: str, plane: bool) -> wp.Function:
         model: The model.
         plane: Whether F and all its changes are plane: third row and column are the identity's.
     """
-    stretch_block, symmetric_modes, antisymmetric_modes = CONSTITUTIVE_MODELS[model][2:]
+    chosen = CONSTITUTIVE_MODELS[model]
+    stretch_block = chosen.stretch_block
+    symmetric_modes, antisymmetric_modes = chosen.symmetric_modes, chosen.antisymmetric_modes
 
     @wp.func
     def stiffness(F: wp.mat33d, mu: wp.float64, lam: wp.float64, scale: wp.float64) -> Stiffness:
         if wp.static(plane):
             left, stretches, right = decompose_plane(F)
         else:
-            left, stretches, right = wp.svd3(F)
+            left, stretches, right = decompose(F)
         symmetric = clamp_modes(symmetric_modes(stretches, mu, lam))
         antisymmetric = clamp_modes(antisymmetric_modes(stretches, mu, lam))
         block = stretch_block(stretches, mu, lam)

@@ -196,7 +196,7 @@ class ReducedSystem:
         ``steps`` in all, of which ``refused``: their result was not finite (``reason``), so they were not made;
         ``limited``: a solution was not taken whole, or velocities were too wild for the step; ``stalled``: a solution
         was not taken at all; ``missed``: a solve ended short of the tolerance. ``iterations`` of the last step's
-        solves and ``most_iterations`` of any; ``residual`` and ``worst_residual``: the factors by which solves shrank it.
+        solves and ``most_iterations`` of any; ``residual`` and ``worst_residual``: factors by which solves shrank it.
         """
         return read_counts(self.record.counts.numpy(), self.record.residuals.numpy())
 

@@ -18,8 +18,10 @@ from .distances import (
 from .face_triangles import triangulate_faces
 from .holes import bridge_holes, contains_point, signed_area
 from .lift import lifted
+from .moments import cone_moments, monomials
 from .overlaps import edge_pierces, near_pairs, point_touches, segments_meet
 from .polygon_mesh import PolygonMesh
+from .polygon_triangles import polygon_triangles
 from .triangulate import triangulate
 from .vectors import dots, triangle_normals, units
 from .winding import winding_numbers
@@ -35,16 +37,19 @@ __all__ = [
     "as_vector",
     "bridge_holes",
     "check_finite",
+    "cone_moments",
     "contains_point",
     "dots",
     "edge_distances",
     "edge_pierces",
     "lifted",
+    "monomials",
     "near_pairs",
     "nearest_on_edges",
     "nearest_on_triangles",
     "plane_gaps",
     "point_touches",
+    "polygon_triangles",
     "segments_meet",
     "signed_area",
     "simplex_distances",

@@ -49,6 +49,36 @@ def triangulate(points: np.ndarray, *, apart: np.ndarray | None = None) -> np.nd
     return np.array(clipper.clip(), dtype=np.int64)
 
 
+def convex_quad_triangles(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Triangulate those of many quads that are strictly convex, as :func:`triangulate` does.
+
+    Args:
+        points: Corners in counterclockwise order, shape (quad_count, 4, 2).
+
+    Returns:
+        Triangles of corner indices of the convex quads, shape (convex_count, 2, 3), and which quads are convex, shape
+        (quad_count,).
+    """
+    low, high = points.min(axis=1), points.max(axis=1)
+    scale = (high - low).max(axis=1)
+    q = (points - low[:, None]) / np.where(scale > 0.0, scale, 1.0)[:, None, None]
+    p, r = np.roll(q, 1, axis=1), np.roll(q, -1, axis=1)
+    (ux, uy), (vx, vy), (wx, wy) = (np.moveaxis(edge, -1, 0) for edge in (q - p, r - p, r - q))
+    turn = ux * vy - uy * vx
+    convex = (turn > _FLAT * ((abs(ux) + abs(uy)) + (abs(vx) + abs(vy)))).all(axis=1)
+    squares = (ux * ux + wx * wx + vx * vx) + (uy * uy + wy * wy + vy * vy)
+    quality = (turn / np.where(squares > 0.0, squares, 1.0))[convex]
+    rank = np.argsort(-quality, axis=1, kind="stable")
+    best, opposite = rank[:, 0], (rank[:, 0] + 2) % 4
+    worth = np.take_along_axis(quality, np.stack([best, opposite], axis=1), axis=1)
+    second = rank[:, 1] == opposite
+    together = (worth[:, 1] >= 0.25 * worth[:, 0]) | (second & (worth[:, 1] >= _POOR * worth[:, 0]))
+    around = np.array([-1, 0, 1])
+    ears = (np.stack([best, opposite], axis=1)[:, :, None] + around) % 4
+    ears[~together, 1] = np.sort(ears[~together, 1], axis=1)  # what one ear leaves is no ear
+    return ears, convex
+
+
 def _scaled(points: list[list[float]]) -> list[list[float]]:
     """Corners in a unit square, each with its inward step behind."""
     xs, ys = [x for x, _ in points], [y for _, y in points]

@@ -16,7 +16,7 @@ import warp as wp
 
 from ..cage import Cage, CageEdit, Cut
 from ..elastic import sample_quadrature
-from ..harmonic import HarmonicCoordinates
+from ..harmonic import HarmonicCoordinates, warm_up_coordinates
 from .effort import Effort
 from .paper.cutting import STEP
 from .reference.long_walks import Reference, long_walks
@@ -165,13 +165,9 @@ class Bench:
         chosen = tuple(sorted(options.items()))
         if chosen in self._warm:
             return
-        few = np.linspace(0, len(self.points) - 1, 16).astype(int)
-        coordinates = HarmonicCoordinates(
-            self.scene.cage, self.points[few], 8, gradients=self.has_gradient[few], device=self.device, **options
+        warm_up_coordinates(
+            self.scene.cage, self.points, gradients=bool(self.has_gradient.any()), device=self.device, **options
         )
-        coordinates.update(self.half_cut.most)
-        coordinates.update(self.half_cut.step)
-        coordinates.recompute()
         self._warm.add(chosen)
 
 

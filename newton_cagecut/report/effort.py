@@ -16,7 +16,8 @@ class Effort:
         name: "full" or "quick".
         point_count: Points of a scene: half of them vertices of its mesh, half quadrature points with gradients.
         walk_counts: Walks a point whose errors are measured.
-        seeds: Seeds of these; each is a run of its own.
+        fitted_counts: Walks a point on top of a fit.
+        seeds: Seeds of the walks; each is a run of its own.
         reference_runs: Long runs of the reference, with seeds of their own.
         reference_walks: Walks a point of each.
         row_walks: Walks a point where the walks are not what is varied.
@@ -29,6 +30,7 @@ class Effort:
     name: str
     point_count: int
     walk_counts: tuple[int, ...]
+    fitted_counts: tuple[int, ...]
     seeds: tuple[int, ...]
     reference_runs: int
     reference_walks: int
@@ -47,6 +49,7 @@ QUICK = Effort(
     name="quick",
     point_count=128,
     walk_counts=(8, 32, 128, 512),
+    fitted_counts=(0, 32, 512),
     seeds=(1, 2),
     reference_runs=4,
     reference_walks=4096,
@@ -60,6 +63,7 @@ FULL = Effort(
     name="full",
     point_count=512,
     walk_counts=tuple(1 << k for k in range(3, 13)),
+    fitted_counts=(0, 8, 32, 128, 512, 2048),
     seeds=(1, 2, 3, 4),
     reference_runs=8,
     reference_walks=8192,

@@ -24,7 +24,7 @@ def linear_of(amounts: Sequence[float], values: Sequence[float]) -> tuple[float,
     """Return a and b, neither below 0, of values ~ a + b * amounts, each value weighted by its inverse.
 
     Args:
-        amounts: Amounts, one or more.
+        amounts: Amounts, not all 0.
         values: Positive values.
     """
     amounts, values = np.asarray(amounts, dtype=np.float64), np.asarray(values, dtype=np.float64)
@@ -32,4 +32,5 @@ def linear_of(amounts: Sequence[float], values: Sequence[float]) -> tuple[float,
         slope, start = np.polyfit(amounts, values, 1, w=1.0 / values)
         if slope > 0.0 and start >= 0.0:
             return float(start), float(slope)
-    return 0.0, float(np.exp(np.mean(np.log(values / amounts))))
+    some = amounts > 0.0
+    return 0.0, float(np.exp(np.mean(np.log(values[some] / amounts[some]))))

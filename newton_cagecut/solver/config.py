@@ -26,7 +26,7 @@ class Config:
     which damps rotation the more, the stiffer the body."""
 
     newton_iterations: int = 1
-    """Linear solves in each implicit stage, of which ``"tr_bdf2"`` has two a step; at least 1, and 1 with ``"paper"``."""
+    """Linear solves in each implicit stage (``"tr_bdf2"`` has two of these); at least 1, and 1 with ``"paper"``."""
 
     max_iterations: int = 150
     """Most iterations of a step's linear solve; at least 1."""

@@ -25,7 +25,7 @@ from .config import Config
 from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
-from .plan import PlanEntry, plan_of
+from .plan import PlanEntry, plan_of, plan_of_scene
 from .progress_bars import fraction_bar
 from .viewing import SurfaceViewer
 from .warm_up import warm_up
@@ -142,7 +142,8 @@ class SolverCageCut(newton.solvers.SolverBase):
 
         Raises:
             TypeError: The state is none of a model with cage bodies.
-            ValueError: The time step is not positive and finite, the contacts were reduced by body pairs, or ``state_in`` missed an edit of a body.
+            ValueError: The time step is not positive and finite, the contacts were reduced by body pairs, or
+                ``state_in`` missed an edit of a body.
         """
         seconds = as_number(dt, "SolverCageCut.step dt")
         if not 0.0 < seconds < math.inf:
@@ -290,4 +291,4 @@ class SolverCageCut(newton.solvers.SolverBase):
 
     def plan(self) -> list[PlanEntry]:
         """What the scene uses, what was left out and why, and the bytes of each."""
-        return [entry for body in self._simulated for entry in plan_of(body)]
+        return [entry for body in self._simulated for entry in plan_of(body)] + plan_of_scene(self._stamps)

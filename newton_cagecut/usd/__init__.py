@@ -5,8 +5,8 @@
 from .animation import AnimationWriter
 from .body_frame import BodyFrame
 from .layers import checked_path
-from .mesh_data import MeshData
-from .read import read_cage, read_mesh, read_surface
+from .mesh_data import MeshData, check_mesh, turn_up
+from .read import read_cage, read_mesh, read_meshes, read_surface
 from .validate import validate_animation
 from .write import write_cage, write_mesh
 
@@ -14,10 +14,13 @@ __all__ = [
     "AnimationWriter",
     "BodyFrame",
     "MeshData",
+    "check_mesh",
     "checked_path",
     "read_cage",
     "read_mesh",
+    "read_meshes",
     "read_surface",
+    "turn_up",
     "validate_animation",
     "write_cage",
     "write_mesh",

@@ -5,10 +5,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import chain
 
 import numpy as np
 
-from ..geometry import triangulate
+from ..geometry import polygon_triangles
 
 _Y_TO_Z = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
@@ -23,6 +24,8 @@ class MeshData:
         uvs: Texture coordinates of the vertices, shape ``(n, 2)``, or ``None``.
         name: Name of the mesh.
         up_axis: ``"Y"`` or ``"Z"``, the axis of ``points`` that points up.
+        corner_uvs: Texture coordinates of the faces' corners, face after face, shape ``(corner_count, 2)``, where they
+            have seams and so ``uvs`` is ``None``.
     """
 
     points: np.ndarray
@@ -30,30 +33,17 @@ class MeshData:
     uvs: np.ndarray | None = None
     name: str = "mesh"
     up_axis: str = "Z"
+    corner_uvs: np.ndarray | None = None
 
     @property
     def triangles(self) -> np.ndarray:
         """The faces cut into triangles, shape ``(m, 3)``, int32."""
-        if all(len(face) == 3 for face in self.faces):
-            return np.array(self.faces, dtype=np.int32).reshape(-1, 3)
-        return np.concatenate([self._face_triangles(face) for face in self.faces]).astype(np.int32)
+        counts = np.fromiter(map(len, self.faces), dtype=np.int64, count=len(self.faces))
+        return polygon_triangles(self.points, counts, np.fromiter(chain.from_iterable(self.faces), dtype=np.int64))
 
     def turned(self, up_axis: str) -> MeshData:
         """The mesh rotated about x so that this axis, ``"Y"`` or ``"Z"``, points up."""
         return replace(self, points=turn_up(self.points, self.up_axis, up_axis), up_axis=up_axis)
-
-    def _face_triangles(self, face: tuple[int, ...]) -> np.ndarray:
-        """Return the triangles of one polygon, cut in the plane that fits it best."""
-        ids = np.array(face)
-        if len(face) == 3:
-            return ids[None]
-        corners = self.points[ids]
-        normal = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)  # Newell's normal
-        drop = int(np.abs(normal).argmax())
-        flat = np.delete(corners, drop, axis=1) * (1.0, 1.0 if drop != 1 else -1.0)
-        if normal[drop] < 0:
-            flat = flat * (-1.0, 1.0)
-        return ids[triangulate(flat)]
 
 
 def turn_up(points: np.ndarray, up_axis: str, wanted: str) -> np.ndarray:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from dataclasses import replace
 from os import PathLike, fspath
 
 import numpy as np
@@ -18,6 +19,8 @@ from .mesh_data import MeshData, check_mesh, turn_up
 from .outline import flat_points, read_outline
 
 _SEAM_TOLERANCE = 1e-5  # of texture space: corners of one vertex that agree to this are one texture coordinate
+_FLAT = 1e-6  # of the size of a mesh: what is thinner has a dimension less
+_LEFT_OUT = "do not belong to vertices; they are left out"
 
 
 def read_mesh(
@@ -42,18 +45,33 @@ def read_mesh(
         ValueError: The file is no USD, the mesh cannot be told, or it is empty or invalid.
     """
     stage = _open_stage(source)
-    mesh = UsdGeom.Mesh(_find_prim(stage, prim_path, UsdGeom.Mesh))
-    label = f"mesh {mesh.GetPath()} of {stage.GetRootLayer().identifier}"
-    points, counts, indices = _arrays(mesh)
-    check_mesh(label, points, counts, indices)
-    placed, mirrored = _place(mesh, points, up_axis)
-    starts = np.cumsum(counts)[:-1]
-    faces = tuple(tuple(int(i) for i in face) for face in np.split(indices, starts))
-    left_handed = mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded
-    if left_handed != mirrored:
-        faces = tuple(face[::-1] for face in faces)
-    uvs = _texture_coordinates(mesh, label, len(points), indices)
-    return MeshData(placed, faces, uvs, mesh.GetPrim().GetName(), up_axis or str(UsdGeom.GetStageUpAxis(stage)))
+    prim = _find_prim(stage, prim_path, UsdGeom.Mesh)
+    mesh = _read_prim(prim, up_axis)
+    if mesh.corner_uvs is not None:
+        warnings.warn(f"{_label(prim)}: its texture coordinates {_LEFT_OUT}", stacklevel=2)
+        mesh = replace(mesh, corner_uvs=None)
+    return mesh
+
+
+def read_meshes(
+    source: str | PathLike | Usd.Stage, prim_path: str | None = None, *, up_axis: str | None = None
+) -> list[MeshData]:
+    """Read all meshes at or below a prim, instanced ones included, each as :func:`read_mesh` does.
+
+    Args:
+        source: As in :func:`read_mesh`.
+        prim_path: The prim; all the stage without it.
+        up_axis: As in :func:`read_mesh`.
+
+    Returns:
+        The meshes, in the order of the stage; those whose texture coordinates have seams keep them at their corners.
+
+    Raises:
+        FileNotFoundError: There is no such file.
+        ValueError: The file is no USD, it has no such prim, or a mesh is empty or invalid.
+    """
+    stage = _open_stage(source)
+    return [_read_prim(prim, up_axis) for prim in _prims(stage, prim_path, UsdGeom.Mesh)]
 
 
 def read_cage(
@@ -137,8 +155,8 @@ def _open_stage(source: str | PathLike | Usd.Stage) -> Usd.Stage:
         raise FileNotFoundError(f"no such USD file: {path}")
     try:
         return Usd.Stage.Open(path)
-    except Tf.ErrorException as error:
-        raise ValueError(f"{path} cannot be read as USD: {error}") from error
+    except Tf.ErrorException:
+        raise ValueError(f"{path} cannot be read as USD: it is damaged, cut short, or no USD file") from None
 
 
 def _prims(stage: Usd.Stage, prim_path: str | None, kind: type) -> list[Usd.Prim]:
@@ -179,6 +197,27 @@ def _place(prim: UsdGeom.PointBased, points: np.ndarray, up_axis: str | None) ->
     return turn_up(placed, stage_axis, up_axis or stage_axis), bool(np.linalg.det(transform[:3, :3]) < 0.0)
 
 
+def _read_prim(prim: Usd.Prim, up_axis: str | None) -> MeshData:
+    """Read a mesh; texture coordinates with seams stay at the corners."""
+    mesh, label = UsdGeom.Mesh(prim), _label(prim)
+    points, counts, indices = _arrays(mesh)
+    check_mesh(label, points, counts, indices)
+    placed, mirrored = _place(mesh, points, up_axis)
+    if _rank(placed) < _rank(points):
+        raise ValueError(f"{label} is flattened in the world: it, or a prim above it, has a scale of zero")
+    uvs, corner_uvs = _texture_coordinates(mesh, len(points), indices)
+    ends = np.cumsum(counts)
+    starts = ends - counts
+    left_handed = mesh.GetOrientationAttr().Get() == UsdGeom.Tokens.leftHanded
+    if left_handed != mirrored:
+        back = np.repeat(starts + ends - 1, counts) - np.arange(len(indices))
+        indices, corner_uvs = indices[back], None if corner_uvs is None else corner_uvs[back]
+    corners = indices.tolist()
+    faces = tuple(tuple(corners[start:end]) for start, end in zip(starts.tolist(), ends.tolist()))
+    own_axis = str(UsdGeom.GetStageUpAxis(prim.GetStage()))
+    return MeshData(placed, faces, uvs, prim.GetName(), up_axis or own_axis, corner_uvs)
+
+
 def _arrays(mesh: UsdGeom.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return points, vertices of each face and vertex indices at the first sample."""
     first = Usd.TimeCode.EarliestTime()
@@ -187,18 +226,31 @@ def _arrays(mesh: UsdGeom.Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return points_at(mesh, first), counts, indices
 
 
-def _texture_coordinates(mesh: UsdGeom.Mesh, label: str, point_count: int, indices: np.ndarray) -> np.ndarray | None:
-    """Return ``primvars:st`` of the vertices, or ``None`` where there are none or they have seams."""
+def _texture_coordinates(
+    mesh: UsdGeom.Mesh, point_count: int, indices: np.ndarray
+) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Return ``primvars:st`` of the vertices and, where it has seams, of the corners; ``None`` where there is none."""
     primvar = UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st")
     if not primvar or not primvar.HasValue():
-        return None
+        return None, None
     values = np.array(primvar.ComputeFlattened(Usd.TimeCode.EarliestTime()), dtype=np.float64).reshape(-1, 2)
     if primvar.GetInterpolation() in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying) and len(values) == point_count:
-        return values
+        return values, None
     if primvar.GetInterpolation() == UsdGeom.Tokens.faceVarying and len(values) == len(indices):
         uvs = np.zeros((point_count, 2))
         uvs[indices] = values
-        if np.abs(uvs[indices] - values).max() <= _SEAM_TOLERANCE:
-            return uvs
-    warnings.warn(f"{label}: its texture coordinates do not belong to vertices; they are left out", stacklevel=3)
-    return None
+        seams = np.abs(uvs[indices] - values).max() > _SEAM_TOLERANCE
+        return (None, values) if seams else (uvs, None)
+    warnings.warn(f"{_label(mesh.GetPrim())}: its texture coordinates {_LEFT_OUT}", stacklevel=4)
+    return None, None
+
+
+def _rank(points: np.ndarray) -> int:
+    """Return the dimension of the space that points span."""
+    spread = points - points.mean(axis=0)
+    return int(np.linalg.matrix_rank(spread.T @ spread, tol=_FLAT**2 * float((spread**2).sum())))
+
+
+def _label(prim: Usd.Prim) -> str:
+    """Return what errors call a mesh."""
+    return f"mesh {prim.GetPath()} of {prim.GetStage().GetRootLayer().identifier}"

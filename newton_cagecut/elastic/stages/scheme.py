@@ -12,8 +12,8 @@ the step, r that which the stage before has reached, v the velocity at the start
   (s - w r) / k, where w = (1 + sqrt 2) / 2.
 
 TR-BDF2 takes one step's state and no history, so that a state can be set, swapped and cut at any time; it is of second
-order, and damps what it cannot resolve. Of the L-stable one-step methods that were measured it alone keeps the spin of a
-stiff body: two- and three-stage SDIRK lose 40 % of it in a second at 10 rad/s, since their first stage is of first
+order, and damps what it cannot resolve. Of the L-stable one-step methods that were measured it alone keeps the spin
+of a stiff body: two- and three-stage SDIRK lose 40 % of it in a second at 10 rad/s, since their first stage is of first
 order; the two-step formula alone loses 5 %, and needs history.
 
 Damping and further terms act at the end of a stage alone: they take the trapezoidal rule's whole impulse there.

@@ -14,7 +14,7 @@ import warp as wp
 from ...cage import Cage, CageEdit
 from ..faces.face_tables import FaceTables, build_face_tables
 from ..fit.boundary_fit import BoundaryFit
-from ..fit.face_values import FaceValues
+from ..fit.face_dipoles import FaceFunctions
 from ..fit.residual_sums import ResidualTable
 from ..fit.residuals import build_residuals
 from ..launch import launch
@@ -45,7 +45,7 @@ class DomainState:
     quads: str
     distance: str
     change: DomainChange | None = None
-    known_faces: dict[bytes, FaceValues] = field(default_factory=dict)
+    known_faces: dict[bytes, FaceFunctions] = field(default_factory=dict)
 
     @classmethod
     def of(

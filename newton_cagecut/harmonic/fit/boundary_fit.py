@@ -11,10 +11,9 @@ import warp as wp
 from ...cage import Cage
 from ..walls.frame import UnitFrame
 from .exactness import affine_frames, make_exact, make_slopes_exact
-from .face_dipoles import projected
-from .face_values import FaceValues, face_values
+from .face_dipoles import FaceFunctions
 from .layers.density_fit import ChargePanels, DensityFit, DipolePanels
-from .panels.face_panels import FacePanels, FacePlanes, face_panels
+from .panels.face_panels import FacePanels, FacePlanes, affordable_panels
 from .plane_fit import PlaneFit
 
 _TOLERANCE = 3e-2
@@ -42,7 +41,7 @@ class BoundaryFit:
         quads: str,
         device: wp.context.Device,
         panel_size: float = _PANEL_SIZE,
-        known: dict[bytes, FaceValues] | None = None,
+        known: dict[bytes, FaceFunctions] | None = None,
     ) -> None:
         self.cage = cage
         self.frame = UnitFrame.of(cage.vertices)
@@ -53,19 +52,19 @@ class BoundaryFit:
             self._fits = [self._plane_fit_of(piece) for piece in range(cage.piece_count)]
             return
         self._planes = FacePlanes(cage, self.frame)
-        self._values = self._face_values({} if known is None else known)
-        panels = face_panels(cage, self.frame, self._planes, panel_size)
+        self._functions = self._face_functions({} if known is None else known)
+        panels = affordable_panels(cage, self.frame, self._planes, panel_size)
         self._cells: dict[int, np.ndarray] = {}
         self._fits = [self._fit_of(piece, panels) for piece in range(cage.piece_count)]
 
-    def _face_values(self, known: dict[bytes, FaceValues]) -> list[FaceValues]:
+    def _face_functions(self, known: dict[bytes, FaceFunctions]) -> list[FaceFunctions]:
         """Boundary functions of all faces, those that are known already and others."""
         polygons = [self._planes.polygon(face) for face in range(self.cage.face_count)]
         keys = [self._quads.encode() + polygon.tobytes() for polygon in polygons]
         found = {}
         for key, polygon in zip(keys, polygons):
             if key not in found:
-                found[key] = known.get(key) or face_values(polygon, quads=self._quads, device=self._device)
+                found[key] = known.get(key) or FaceFunctions(polygon, quads=self._quads, device=self._device)
         known.clear()
         known.update(found)
         return [found[key] for key in keys]
@@ -89,7 +88,7 @@ class BoundaryFit:
             at = np.flatnonzero(panels.face[used] == face)
             if len(at):
                 place = self._planes.to_plane(face, points[at]).reshape(-1, 2)
-                found = self._values[face](place).reshape(len(at), points.shape[1], -1)
+                found = self._functions[face].at(place).reshape(len(at), points.shape[1], -1)
                 for k, column in enumerate(loop.tolist()):
                     known[at, :, column] += found[:, :, k]
             parts.append(self._dipoles_of(face, panels, loop))
@@ -104,7 +103,7 @@ class BoundaryFit:
             corners, density = self._planes.polygon(face)[None], np.eye(3)[None]
             self._cells[face] = own
         else:
-            corners, density = projected(self._values[face], self._planes.to_plane(face, own), _TOLERANCE)
+            corners, density = self._functions[face].projected(self._planes.to_plane(face, own), _TOLERANCE)
             self._cells[face] = self._planes.to_space(face, corners)
         items = np.swapaxes(density, 1, 2).reshape(-1, 3)
         counts = np.full(len(corners), len(loop))
@@ -179,7 +178,7 @@ class BoundaryFit:
     def _on_face(self, face: int, unit: np.ndarray) -> np.ndarray:
         """Boundary functions at points of a face, shape (point_count, corner_count)."""
         if self.cage.dimension == 3:
-            return self._values[face](self._planes.to_plane(face, unit))
+            return self._functions[face].values(self._planes.to_plane(face, unit))
         start, end = self.frame.to_unit(self.cage.vertices[list(self.cage.faces[face])])
         share = ((unit - start) * (end - start)).sum(axis=1) / ((end - start) ** 2).sum()
         return np.stack([1.0 - share, share], axis=1)

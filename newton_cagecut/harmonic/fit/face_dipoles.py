@@ -10,8 +10,9 @@ linear functions exactly, and panels are divided until the error is small.
 from __future__ import annotations
 
 import numpy as np
+import warp as wp
 
-from .face_values import FaceValues
+from .face_values import FaceValues, face_values
 
 _DIVISIONS = 4
 _NEAR, _FAR = 0.816847572980459, 0.108103018168070
@@ -63,3 +64,32 @@ def projected(values: FaceValues, corners: np.ndarray, tolerance: float) -> tupl
             break
         corners = divided(corners[large])
     return np.concatenate(triangles), np.concatenate(densities)
+
+
+class FaceFunctions:
+    """The boundary functions of a face, and what was last asked of them: an edit leaves the panels of most faces alone.
+
+    Args:
+        corners: Corners in the face's plane, counterclockwise, shape (corner_count, 2).
+        quads: "mean_value" or "harmonic": how convex quads interpolate.
+        device: Where to compute.
+    """
+
+    def __init__(self, corners: np.ndarray, *, quads: str, device: wp.context.Device) -> None:
+        self.values = face_values(corners, quads=quads, device=device)
+        self._places, self._found = b"", np.zeros(0)
+        self._panels, self._projected = b"", (np.zeros(0), np.zeros(0))
+
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """The functions at points of the face's plane, shape (n, corner_count)."""
+        places = points.tobytes()
+        if places != self._places:
+            self._places, self._found = places, self.values(points)
+        return self._found
+
+    def projected(self, corners: np.ndarray, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
+        """The functions as linear ones on triangles; see ``projected``."""
+        panels = corners.tobytes()
+        if panels != self._panels:
+            self._panels, self._projected = panels, projected(self.values, corners, tolerance)
+        return self._projected

@@ -9,7 +9,7 @@ import warp as wp
 
 from ..faces.face_tables import FaceTables, plane_point
 from ..walks.landing import KEY_MASK, landing_type, point_functions
-from .layers.solve import LANE
+from .layers.products import LANE
 
 wp.set_module_options({"enable_backward": False})
 

@@ -16,7 +16,7 @@ import warp as wp
 
 from ..walls.frame import UnitFrame
 from .boundary_fit import BoundaryFit
-from .layers.solve import LANE, WIDTH, lane_count
+from .layers.products import LANE, WIDTH, lane_count
 from .residual_sums import TERMS, ResidualCell, ResidualTable
 
 _INWARD = 1e-6

@@ -13,7 +13,7 @@ import warp as wp
 from ..faces.face_tables import FaceTables
 from ..fit.boundary_fit import BoundaryFit
 from ..fit.face_lookup import nearest_faces
-from ..fit.layers.solve import LANE
+from ..fit.layers.products import LANE
 from ..fit.residual_sums import ResidualTable, make_residual_kernel
 from ..launch import launch
 from ..walks.query_points import QueryPoints

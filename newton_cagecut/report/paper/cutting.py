@@ -8,10 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-import numpy as np
-
 from ...cage import Cage, CageEdit, Cut
-from ...harmonic import HarmonicCoordinates
 from ...section import Blade
 
 STEP = 0.03  # of a cut's length, as in section 7 of the paper
@@ -35,18 +32,3 @@ def edits(cage: Cage, blades: Sequence[Blade], step: float = STEP) -> Iterator[C
 def step_count(step: float = STEP) -> int:
     """Return the number of steps of one cut."""
     return math.ceil(1.0 / step - 1e-9)
-
-
-def compile_kernels(cage: Cage, blades: Sequence[Blade], points: np.ndarray, **options) -> None:
-    """Run all kernels of an update on a few points, so that none is compiled while the clock runs.
-
-    Args:
-        cage: The cage.
-        blades: Its cuts.
-        points: Points in it [m], shape ``(n, 3)``.
-        options: Of the coordinates.
-    """
-    coordinates = HarmonicCoordinates(cage, points[:: max(1, len(points) // 16)], 8, **options)
-    for edit in edits(cage, blades, 0.1):
-        coordinates.update(edit)
-    coordinates.recompute()

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...elastic import sample_quadrature
-from ...harmonic import HarmonicCoordinates, UpdateStats
+from ...harmonic import HarmonicCoordinates, UpdateStats, warm_up_coordinates
 from ..scenes.scene import Scene
-from .cutting import compile_kernels, edits, step_count
+from .cutting import edits, step_count
 from .published import PaperRow
 
 QUADRATURE_COUNT = 600  # of STARFISH in section 7.2 of the paper
@@ -96,7 +96,7 @@ def measure_table(
     if gradients:
         extra = sample_quadrature(scene.cage, QUADRATURE_COUNT)[0]
         points, mask = np.concatenate([points, extra]), np.append(mask, np.ones(len(extra), dtype=bool))
-    compile_kernels(scene.cage, scene.blades, points, gradients=gradients, **options)
+    warm_up_coordinates(scene.cage, points, gradients=gradients, **options)
     total = len(scene.blades) * step_count()
     coordinates = HarmonicCoordinates(scene.cage, points, walks, gradients=mask, **options)
     steps, recomputes = [], [recompute_seconds(coordinates)]

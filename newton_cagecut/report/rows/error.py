@@ -13,7 +13,9 @@ from ...harmonic import HarmonicCoordinates
 from ..bench import Bench
 
 NAME = "error"
-CORRECTIONS = ("none", "affine", "harmonic")
+CORRECTIONS = ("none", "affine", "harmonic", "fitted")
+WALKED = CORRECTIONS[:3]
+"""Those of which a recompute does everything again; a fit follows from the walls and is not made again."""
 KINDS = ("weights", "gradients", "surface")
 
 
@@ -66,7 +68,7 @@ def measure_error(bench: Bench, correction: str, walks: int, seed: int, **option
     during = {
         "seconds": update + half.seconds,
         "whole_seconds": whole_seconds(coordinates, weights, gradients) + half.seconds,
-        "rewalked": stats.rewalked / stats.walk_count,
+        "rewalked": stats.rewalked / max(stats.walk_count, 1),
         "squared": bench.reference("during").squared_errors(weights, gradients),
     }
     return {"before": before, "during": during}

@@ -18,6 +18,7 @@ LABELS = {
     "none": "walks, plain",
     "affine": "walks, affine (the paper)",
     "harmonic": "walks, harmonic",
+    "fitted": "fit, and walks",
 }
 
 
@@ -30,12 +31,24 @@ class Curve:
         amount: Walks a point, or unknowns.
         seconds: Time of each [s].
         errors: Error of each.
+        own: Squared error of the reference that they are measured against.
     """
 
     label: str
     amount: np.ndarray
     seconds: np.ndarray
     errors: np.ndarray
+    own: float = 0.0
+
+    @property
+    def net(self) -> np.ndarray:
+        """The errors without the part that is the reference's; where little is left, an upper bound of them."""
+        return np.sqrt(np.maximum(self.errors**2 - self.own, 0.5 * self.own))
+
+    @property
+    def bounded(self) -> np.ndarray:
+        """Whether the net errors are such bounds."""
+        return self.errors**2 < 1.5 * self.own
 
     @property
     def empty(self) -> bool:
@@ -69,7 +82,8 @@ def walk_curve(
         stages = [record.values[stage] for record in own if record.parameters["walks"] == walks]
         error = np.sqrt(np.mean([values["squared"][kind] for values in stages]))
         found.append((walks, np.median([values[seconds] for values in stages]), error))
-    return Curve(LABELS[correction], *np.array(found).reshape(-1, 3).T)
+    owns = [record.values["own"][kind] for record in chosen(records, "reference", scene, stage=stage)]
+    return Curve(LABELS[correction], *np.array(found).reshape(-1, 3).T, own=owns[0] if owns else 0.0)
 
 
 def element_curve(

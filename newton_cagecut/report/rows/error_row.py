@@ -11,7 +11,7 @@ from functools import partial
 from ..bench import STAGES, Bench
 from ..measurement import Measurement, Record
 from ..page.markdown import Section
-from .error import CORRECTIONS, NAME, measure_error, measure_reference
+from .error import NAME, WALKED, measure_error, measure_reference
 from .error_pages import error_sections
 
 
@@ -26,12 +26,18 @@ class ErrorRow:
             for stage in STAGES:
                 run = partial(measure_reference, bench, stage)
                 yield Measurement("reference", bench.scene.name, {"stage": stage}, run)
-            for walks in bench.effort.walk_counts:
-                for correction in CORRECTIONS:
-                    for seed in bench.effort.seeds:
-                        chosen = {"correction": correction, "walks": walks, "seed": seed}
-                        run = partial(measure_error, bench, **chosen)
-                        yield Measurement(NAME, bench.scene.name, chosen, run)
+            for chosen in self._choices(bench):
+                yield Measurement(NAME, bench.scene.name, chosen, partial(measure_error, bench, **chosen))
+
+    @staticmethod
+    def _choices(bench: Bench) -> Iterator[dict]:
+        """The fit with few walks or none, by one seed as it is the same for all; the others with more and more."""
+        for walks in bench.effort.fitted_counts:
+            yield {"correction": "fitted", "walks": walks, "seed": bench.effort.seeds[0]}
+        for walks in bench.effort.walk_counts:
+            for correction in WALKED:
+                for seed in bench.effort.seeds:
+                    yield {"correction": correction, "walks": walks, "seed": seed}
 
     def sections(self, records: Sequence[Record]) -> Iterator[Section]:
         """See ``Row``."""

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -16,7 +17,7 @@ from ..measurement import Measurement, Record, chosen, scenes_of
 from ..page.markdown import Section, Table, seconds_text
 from .error import CORRECTIONS
 from .error import NAME as ERROR
-from .error_curves import element_curve, walk_curve
+from .error_curves import Curve, element_curve, walk_curve
 
 NAME = "recommendation"
 ERRORS = (3e-2, 1e-2, 3e-3, 1e-3)
@@ -90,12 +91,17 @@ def recommended(records: Sequence[Record], scene: str, error: float) -> Choice |
         before, during = (walk_curve(records, scene, correction, stage, "weights") for stage in ("before", "during"))
         if before.empty:
             continue
-        # of the later half of the walks: control variates of few walks are still of low degree
-        scale = max(
-            np.sqrt(np.mean((curve.errors**2 * curve.amount)[len(curve.amount) // 2 :])) for curve in (before, during)
-        )
-        walks = int(np.ceil((scale / error) ** 2))
-        if 1 <= walks <= _MOST_WALKS:
-            fits = [linear_of(curve.amount, curve.seconds) for curve in (before, during)]
+        both = (before, during)
+        if not before.amount[0] and max(curve.net[0] for curve in both) <= error:
+            choices.append(Choice(correction, 0, *(curve.seconds[0] for curve in both)))
+        walks = max(_walks_for(error, curve) for curve in both)
+        if walks <= _MOST_WALKS:
+            fits = [linear_of(curve.amount, curve.seconds) for curve in both]
             choices.append(Choice(correction, walks, *(start + slope * walks for start, slope in fits)))
     return min(choices, key=lambda choice: choice.seconds, default=None)
+
+
+def _walks_for(error: float, curve: Curve) -> int:
+    """Walks for an error, by the later half of the curve: control variates of few walks are still of low degree."""
+    later = slice(len(curve.amount) // 2, None)
+    return max(1, math.ceil(float(np.mean((curve.net**2 * curve.amount)[later])) / error**2))

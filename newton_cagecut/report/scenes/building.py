@@ -11,18 +11,19 @@ from collections.abc import Callable
 from pathlib import Path
 
 import newton
+import warp as wp
 
 from .script import loaded_script
 
 Build = Callable[[newton.ModelBuilder], object]
 
 
-def build_of(name: str, *, walks: int = 64) -> Build:
+def build_of(name: str, *, walks: int | None = None) -> Build:
     """What adds a scene's bodies to a builder that has the attributes of ``SolverCageCut``.
 
     Args:
         name: Path of a script that has a function ``build(builder)``, or the name of an example.
-        walks: Walks a point of an example's bodies.
+        walks: Walks a point of an example's bodies; on a CPU those of the examples by default, on CUDA the solver's.
 
     Raises:
         OSError: There is no such script.
@@ -42,6 +43,9 @@ def build_of(name: str, *, walks: int = 64) -> Build:
     kind = getattr(importlib.import_module(f"examples.{name}"), "Example", None)
     if not hasattr(kind, "add_bodies"):
         raise ValueError(f"{example} is not a scene: it has no Example with add_bodies(builder)")
+
+    if walks is None and wp.get_device().is_cpu:
+        walks = importlib.import_module("examples.options").CPU_WALKS
 
     def build(builder: newton.ModelBuilder) -> None:
         scene = object.__new__(kind)  # without a viewer and all else that showing it takes

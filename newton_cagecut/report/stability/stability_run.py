@@ -18,7 +18,7 @@ from .rows.starts import MODELS
 from .stability_page import PICTURE, Page
 from .sweep import axes, map_name, sweep
 from .table import measure, rows
-from .workbench import Workbench
+from .workbench import WALKS, Workbench
 
 
 def measure_all(scene: str | None, folder: Path, *, quick: bool) -> int:
@@ -38,7 +38,7 @@ def measure_all(scene: str | None, folder: Path, *, quick: bool) -> int:
     """
     wp.config.log_level = wp.LOG_WARNING
     start = perf_counter()
-    bench = Workbench(quick=quick, scene=None if scene is None else build_of(scene))
+    bench = Workbench(quick=quick, scene=None if scene is None else build_of(scene, walks=WALKS))
     folder.mkdir(parents=True, exist_ok=True)
     young, time_steps = axes(quick=quick)
     table, results, maps = rows(quick=quick, scene=scene is not None), [], []

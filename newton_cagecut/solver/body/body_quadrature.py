@@ -3,8 +3,9 @@
 
 """The quadrature points of a body that falls into pieces.
 
-Each piece weighs what its volume says, and has enough points of its own to be a solid: spare points, reserved with the
-others and without volume until then, go to pieces that were cut off between the points.
+Each piece has the mass, the centre of mass and, unless its points are few, the inertia that its shape says. It has
+enough points of its own to be a solid: spare points, reserved with the others and without volume until then, go to
+pieces that were cut off between the points.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...cage import Cage
-from ...elastic import sample_quadrature
+from ...elastic import exact_volumes, sample_quadrature
 
 SPARE_COUNT = 64
 """Spare points that a body which can be cut reserves."""
@@ -64,7 +65,7 @@ class BodyQuadrature:
         sampled, volumes = sample_quadrature(cage, count, seed=seed)
         shares = np.concatenate([volumes, np.zeros(spare_count)])
         thickness = 1.0 if thickness is None else thickness
-        return cls(
+        quadrature = cls(
             points=np.concatenate([sampled, np.repeat(sampled[:1], spare_count, axis=0)]),
             volumes=thickness * shares,
             shares=shares,
@@ -72,6 +73,14 @@ class BodyQuadrature:
             thickness=thickness,
             generator=np.random.default_rng(seed),
         )
+        if cage.piece_count == 1:
+            return quadrature
+        piece = quadrature._piece_of_points(cage)
+        for index in range(cage.piece_count):
+            own = np.flatnonzero(piece == index)
+            if len(own):
+                quadrature.volumes[own] = thickness * _piece_volumes(cage, index, sampled[own], volumes[own])
+        return quadrature
 
     def distributed(self, cage: Cage, distance_to_walls: DistanceToWalls) -> BodyQuadrature:
         """The same points, with enough of them and its own volume in every piece of a cage.
@@ -83,9 +92,8 @@ class BodyQuadrature:
         generator = copy.deepcopy(self.generator)
         points, shares, volumes = self.points.copy(), self.shares.copy(), self.volumes.copy()
         used = self.used_count
-        piece = cage.piece_of(points)
-        piece[used:] = -1
-        for index, volume in enumerate(cage.piece_volumes):
+        piece = self._piece_of_points(cage)
+        for index in range(cage.piece_count):
             own = np.flatnonzero(piece == index)
             if len(own) < _FEWEST:
                 wanted = min(_FEWEST - len(own), len(points) - used)
@@ -94,10 +102,21 @@ class BodyQuadrature:
                 points[fresh], used = placed, used + len(placed)
                 own = np.concatenate([own, fresh])
                 shares[own] = 1.0
-            total = shares[own].sum()
-            if total > 0.0:
-                volumes[own] = shares[own] * (self.thickness * volume / total)
+            if len(own):
+                volumes[own] = self.thickness * _piece_volumes(cage, index, points[own], shares[own])
         return replace(self, points=points, volumes=volumes, shares=shares, used_count=used, generator=generator)
+
+    def _piece_of_points(self, cage: Cage) -> np.ndarray:
+        """Piece of each point in use, -1 of the others, shape (point_count,)."""
+        piece = cage.piece_of(self.points)
+        piece[self.used_count :] = -1
+        return piece
+
+
+def _piece_volumes(cage: Cage, piece: int, points: np.ndarray, shares: np.ndarray) -> np.ndarray:
+    """Volumes, in 2D areas, of the points of a piece."""
+    boundary = cage.vertices[cage.simplices[cage.face_piece[cage.simplex_face] == piece]]
+    return exact_volumes(points, shares, boundary)
 
 
 def _places(

@@ -34,11 +34,6 @@ class ContactTerm:
         self._body = body
         self.points = make_touched_points(body.capacity.surface_points, body.device)
 
-    @property
-    def byte_count(self) -> int:
-        """Bytes on the device."""
-        return self.points.force.size * (3 * 36 + 2 * 12 + 4)
-
     def collect(self, state: newton.State, contacts: newton.Contacts) -> None:
         """Sum the soft contacts of each surface point."""
         body, model, points = self._body, self._body.model, self.points

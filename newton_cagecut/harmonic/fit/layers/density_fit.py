@@ -19,12 +19,15 @@ import warp as wp
 
 from ...launch import launch
 from .layer_rows import make_layer_rows
-from .solve import LANE, WIDTH, System, lane_count, multiply_lanes
+from .products import LANE, WIDTH, lane_count, multiply_lanes
+from .solve import System
 
 wp.set_module_options({"enable_backward": False})
 
 _INWARD = 1e-10
 """How far inside of their panels test points lie, in units of the frame's: that tells the sides of double layers."""
+_SAME = 1e-10
+"""Length below which corners are the same, in units of the frame's."""
 _BATCH = 2048
 """Points whose rows are held at a time."""
 # Where the residual is tested, as hat functions there, and with what weights: exact for polynomials of degree 2.
@@ -113,6 +116,9 @@ class DensityFit:
         dipoles: Panels with the boundary values as densities.
         values: Boundary values at ``charges.test_points``, shape (panel_count, 3, column_count).
         device: Where to compute.
+
+    Raises:
+        ValueError: There is no solution.
     """
 
     def __init__(
@@ -123,14 +129,12 @@ class DensityFit:
         self.column_count = values.shape[2]
         self.node_count = charges.node_count
         kit = self._kit = make_layer_rows(self.dimension)
-        self._charges = [
-            kit.make_panels(charges.corners, device),
-            kit.make_far_panels(charges.corners, device),
-            wp.array(charges.nodes.astype(np.int32), dtype=kit.Nodes, device=device),
-        ]
-        self._dipoles = [
-            kit.make_panels(dipoles.corners, device),
-            kit.make_far_panels(dipoles.corners, device),
+        corners, nodes, dipoles = _merged(charges, dipoles)
+        self.panel_count = len(corners)
+        self._panels = [
+            kit.make_panels(corners, device),
+            kit.make_far_panels(corners, device),
+            wp.array(nodes.astype(np.int32), dtype=kit.Nodes, device=device),
             wp.array(dipoles.start.astype(np.int32), dtype=wp.int32, device=device),
             wp.array(dipoles.column.astype(np.int32), dtype=wp.int32, device=device),
             wp.array(dipoles.density, dtype=kit.Vector, device=device),
@@ -147,12 +151,17 @@ class DensityFit:
         filled = np.zeros(known.numbers.shape)
         filled[:, : self.column_count] = values.reshape(len(points), -1)
         known.numbers.assign(-filled)
-        self._run(self._kit.dipoles, self._dipoles, points, known)
-        self._apply(test, known, system.first_lane, system.matrix, -1.0)
         unknown = _Rows(len(points), self.node_count, self.device)
-        self._run(self._kit.charges, self._charges, points, unknown)
+        self._run(self._kit.layers, points, unknown, known)
+        self._apply(test, known, system.first_lane, system.matrix, -1.0)
         self._apply(test, unknown, 0, system.matrix, 1.0)
-        return wp.clone(system.solve())
+        density = wp.clone(system.solve())
+        if not np.isfinite(density.numpy()).all():
+            raise ValueError(
+                "the fit of this cage has no solution: faces of no area, or walls that all but coincide; "
+                "take correction='harmonic'"
+            )
+        return density
 
     def _test(self, charges: ChargePanels, size: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """What the test points count for each node: first item of a node, points and weights, by node and point."""
@@ -177,28 +186,28 @@ class DensityFit:
         ]
         launch(_test_rows, self.node_count * rows.lanes.shape[1], inputs, device=self.device)
 
-    def _run(self, kernel: wp.Kernel, panels: list, points: np.ndarray, rows: _Rows) -> None:
+    def _run(self, kernel: wp.Kernel, points: np.ndarray, unknown: _Rows, known: _Rows) -> None:
         at = wp.array(points, dtype=self._kit.Vector, device=self.device)
-        launch(kernel, len(points), [*panels, at, rows.numbers], device=self.device, smallest_chunk=8)
+        inputs = [*self._panels, at, unknown.numbers, known.numbers]
+        launch(kernel, len(points), inputs, device=self.device, smallest_chunk=8)
 
     def values(self, points: np.ndarray) -> np.ndarray:
         """The functions at points inside, shape (point_count, column_count)."""
-        return self._evaluated(points, self._kit.charges, self._kit.dipoles, 1)
+        return self._evaluated(points, self._kit.layers, 1)
 
     def gradients(self, points: np.ndarray) -> np.ndarray:
         """Gradients of the functions at points inside, shape (point_count, column_count, dimension)."""
-        rows = self._evaluated(points, self._kit.charge_slopes, self._kit.dipole_slopes, self.dimension)
+        rows = self._evaluated(points, self._kit.slopes, self.dimension)
         return np.swapaxes(rows.reshape(len(points), self.dimension, self.column_count), 1, 2)
 
-    def _evaluated(self, points: np.ndarray, charges: wp.Kernel, dipoles: wp.Kernel, rows_each: int) -> np.ndarray:
+    def _evaluated(self, points: np.ndarray, kernel: wp.Kernel, rows_each: int) -> np.ndarray:
         out = np.empty((len(points) * rows_each, self.column_count))
         batch = max(1, _BATCH // rows_each)
         for first in range(0, len(points), batch):
             some = points[first : first + batch]
             left = _Rows(len(some) * rows_each, self.node_count, self.device)
             total = _Rows(len(some) * rows_each, self.column_count, self.device)
-            self._run(charges, self._charges, some, left)
-            self._run(dipoles, self._dipoles, some, total)
+            self._run(kernel, some, left, total)
             lanes = total.lanes
             count = -(-lanes.shape[0] // 4) * lanes.shape[1]
             inputs = [left.lanes, self._density, left.lanes.shape[1], lanes]
@@ -206,6 +215,21 @@ class DensityFit:
             part = total.numbers.numpy()[:, : self.column_count]
             out[first * rows_each : first * rows_each + len(part)] = part
         return out
+
+
+def _merged(charges: ChargePanels, dipoles: DipolePanels) -> tuple[np.ndarray, np.ndarray, DipolePanels]:
+    """Panels that carry charges, dipoles or both: corners, nodes that are -1 without charges, and dipoles."""
+    corners = np.concatenate([charges.corners, dipoles.corners])
+    key = np.round(corners / _SAME).astype(np.int64).reshape(len(corners), -1)
+    _, first, panel = np.unique(key, axis=0, return_index=True, return_inverse=True)
+    charged, panel = np.split(panel.reshape(-1), [len(charges.corners)])
+    nodes = np.full((len(first), charges.nodes.shape[1]), -1)
+    nodes[charged] = charges.nodes
+    owner = np.repeat(panel, np.diff(dipoles.start))
+    order = np.argsort(owner, kind="stable")
+    start = np.searchsorted(owner[order], np.arange(len(first) + 1))
+    merged = DipolePanels(corners[first], start, dipoles.column[order], dipoles.density[order])
+    return merged.corners, nodes, merged
 
 
 def _combined(hats: np.ndarray, corners: np.ndarray) -> np.ndarray:

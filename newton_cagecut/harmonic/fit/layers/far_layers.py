@@ -3,7 +3,7 @@
 
 """Layers of panels that are far away, by a few points of each: closed forms cost several times as much there.
 
-A panel is far from ``_FAR`` times its radius on; what is left out is then below 1e-5 of the layer.
+A panel is far from ``_FAR`` times its radius on; what is left out of its layers is then about 1e-5 of them.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from .triangle_layers import CORNERS, TriangleLayers, TriangleSlopes
 
 wp.set_module_options({"enable_backward": False})
 
-_FAR = 4.0
-"""Distance of a panel's centre from which it is far, in units of its corners' greatest distance from the centre."""
+_FAR = {2: 6.0, 3: 3.0}
+"""Distance of a panel's centre from which it is far, in units of its corners' greatest distance, by dimension."""
 
 # A rule for triangles that is exact to degree 4: three points near the corners and three near the middles of the edges.
 _NEAR_CORNER, _NEAR_EDGE = 0.816847572980459, 0.108103018168070
@@ -182,7 +182,7 @@ def make_far_triangles(corners: np.ndarray, device: wp.context.Devicelike) -> wp
     rows["outer"] = (1.5 * _NEAR_CORNER - 0.5) * corners + (0.5 - 0.5 * _NEAR_CORNER) * total
     rows["inner"] = (1.5 * _NEAR_EDGE - 0.5) * corners + (0.5 - 0.5 * _NEAR_EDGE) * total
     rows["center"], rows["normal"], rows["scale"] = center, area_vector / area[:, None], area * (0.25 / np.pi)
-    rows["squared"] = _FAR**2 * ((corners - center[:, None]) ** 2).sum(axis=2).max(axis=1)
+    rows["squared"] = _FAR[3] ** 2 * ((corners - center[:, None]) ** 2).sum(axis=2).max(axis=1)
     return wp.array(rows, dtype=FarTriangle, device=device)
 
 
@@ -200,5 +200,5 @@ def make_far_segments(corners: np.ndarray, device: wp.context.Devicelike) -> wp.
     rows["center"] = corners[:, 0] + 0.5 * edge
     rows["normal"] = edge[:, ::-1] * [1.0, -1.0] / length[:, None]
     rows["points"] = corners[:, :1] + np.array([1.0 - _GAUSS, _GAUSS])[:, None] * edge[:, None]
-    rows["scale"], rows["squared"] = length * (0.5 / np.pi), _FAR**2 * 0.25 * length**2
+    rows["scale"], rows["squared"] = length * (0.5 / np.pi), _FAR[2] ** 2 * 0.25 * length**2
     return wp.array(rows, dtype=FarSegment, device=device)

@@ -32,20 +32,17 @@ class LayerRows(NamedTuple):
         Nodes: Type of a panel's nodes.
         make_panels: corners, device -> panels.
         make_far_panels: corners, device -> panels as seen from afar.
-        charges: Adds the single layers of hat functions to the columns of their nodes.
-        charge_slopes: The same for the gradients, a row an axis.
-        dipoles: Takes double layers of given densities from the columns that they belong to.
-        dipole_slopes: The same for the gradients, a row an axis.
+        layers: Adds single layers of hat functions to the columns of their nodes, in panels that have some, and takes
+            double layers of given densities from the columns that these belong to.
+        slopes: The same for the gradients, a row an axis.
     """
 
     Vector: type
     Nodes: type
     make_panels: object
     make_far_panels: object
-    charges: wp.Kernel
-    charge_slopes: wp.Kernel
-    dipoles: wp.Kernel
-    dipole_slopes: wp.Kernel
+    layers: wp.Kernel
+    slopes: wp.Kernel
 
 
 @cache
@@ -87,72 +84,57 @@ def make_layer_rows(dimension: int) -> LayerRows:
         return slopes
 
     @wp.kernel(enable_backward=False)
-    def charges(
+    def layers(
         offset: int,
         panels: wp.array[Panel],
         far: wp.array[FarPanel],
         nodes: wp.array[Nodes],
+        start: wp.array[wp.int32],
+        column: wp.array[wp.int32],
+        density: wp.array[Vector],
         points: wp.array[Vector],
-        rows: wp.array2d[wp.float64],
+        unknown: wp.array2d[wp.float64],
+        known: wp.array2d[wp.float64],
     ):
         i = offset + wp.tid()
         for j in range(panels.shape[0]):
-            layers = layers_at(panels, far, j, points[i])
+            own = layers_at(panels, far, j, points[i])
             node = nodes[j]
-            for k in range(wp.static(dimension)):
-                rows[i, node[k]] += layers.charge[k]
+            # Read, add, write: "+=" on an array element would be atomic.
+            if node[0] >= 0:
+                for k in range(wp.static(dimension)):
+                    before = unknown[i, node[k]]
+                    unknown[i, node[k]] = before + own.charge[k]
+            for item in range(start[j], start[j + 1]):
+                before = known[i, column[item]]
+                known[i, column[item]] = before - wp.dot(density[item], own.dipole)
 
     @wp.kernel(enable_backward=False)
-    def charge_slopes(
+    def slopes(
         offset: int,
         panels: wp.array[Panel],
         far: wp.array[FarPanel],
         nodes: wp.array[Nodes],
+        start: wp.array[wp.int32],
+        column: wp.array[wp.int32],
+        density: wp.array[Vector],
         points: wp.array[Vector],
-        rows: wp.array2d[wp.float64],
+        unknown: wp.array2d[wp.float64],
+        known: wp.array2d[wp.float64],
     ):
         i = offset + wp.tid()
         for j in range(panels.shape[0]):
-            slopes = slopes_at(panels, far, j, points[i])
+            own = slopes_at(panels, far, j, points[i])
             node = nodes[j]
-            for k in range(wp.static(dimension)):
-                for axis in range(wp.static(dimension)):
-                    rows[i * wp.static(dimension) + axis, node[k]] += slopes.charge[k, axis]
-
-    @wp.kernel(enable_backward=False)
-    def dipoles(
-        offset: int,
-        panels: wp.array[Panel],
-        far: wp.array[FarPanel],
-        start: wp.array[wp.int32],
-        column: wp.array[wp.int32],
-        density: wp.array[Vector],
-        points: wp.array[Vector],
-        rows: wp.array2d[wp.float64],
-    ):
-        i = offset + wp.tid()
-        for j in range(panels.shape[0]):
-            layers = layers_at(panels, far, j, points[i])
+            if node[0] >= 0:
+                for k in range(wp.static(dimension)):
+                    for axis in range(wp.static(dimension)):
+                        before = unknown[i * wp.static(dimension) + axis, node[k]]
+                        unknown[i * wp.static(dimension) + axis, node[k]] = before + own.charge[k, axis]
             for item in range(start[j], start[j + 1]):
-                rows[i, column[item]] -= wp.dot(density[item], layers.dipole)
-
-    @wp.kernel(enable_backward=False)
-    def dipole_slopes(
-        offset: int,
-        panels: wp.array[Panel],
-        far: wp.array[FarPanel],
-        start: wp.array[wp.int32],
-        column: wp.array[wp.int32],
-        density: wp.array[Vector],
-        points: wp.array[Vector],
-        rows: wp.array2d[wp.float64],
-    ):
-        i = offset + wp.tid()
-        for j in range(panels.shape[0]):
-            slopes = slopes_at(panels, far, j, points[i])
-            for item in range(start[j], start[j + 1]):
-                slope = density[item] * slopes.dipole
+                slope = density[item] * own.dipole
                 for axis in range(wp.static(dimension)):
-                    rows[i * wp.static(dimension) + axis, column[item]] -= slope[axis]
+                    before = known[i * wp.static(dimension) + axis, column[item]]
+                    known[i * wp.static(dimension) + axis, column[item]] = before - slope[axis]
 
-    return LayerRows(Vector, Nodes, make_panels, make_far_panels, charges, charge_slopes, dipoles, dipole_slopes)
+    return LayerRows(Vector, Nodes, make_panels, make_far_panels, layers, slopes)

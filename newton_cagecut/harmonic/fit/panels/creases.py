@@ -18,10 +18,19 @@ from ....cage import Cage
 from ...walls.frame import UnitFrame
 
 _LEAST_ANGLE = 1.02 * np.pi
-_SHRINK = 0.35
-"""Panels at an edge of three quarters of a turn, relative to others; the exponent grows with the angle."""
-_GROWTH = 1.75
-"""Panels a distance away from a crease, relative to the distance."""
+
+
+@dataclass(frozen=True)
+class Grading:
+    """How panels shrink towards creases.
+
+    Args:
+        shrink: Panels at an edge of three quarters of a turn, relative to others; the exponent grows with the angle.
+        growth: Panels a distance away from a crease, relative to the distance.
+    """
+
+    shrink: float
+    growth: float
 
 
 @dataclass(frozen=True)
@@ -32,12 +41,14 @@ class Creases:
         start: Where they start, shape (n, 3).
         step: From there to their ends, shape (n, 3).
         least: Greatest length of panels on them, shape (n,).
+        growth: Length of panels a distance away, relative to the distance.
         fronts: Half-edges of each face along the front of a cut, as pairs of face and half-edge, shape (m, 2).
     """
 
     start: np.ndarray
     step: np.ndarray
     least: np.ndarray
+    growth: float
     fronts: np.ndarray
 
     def wanted(self, points: np.ndarray, most: float) -> np.ndarray:
@@ -53,17 +64,18 @@ class Creases:
             offset = points - start
             share = np.clip((offset * step).sum(axis=1) / length, 0.0, 1.0)
             distance = np.sqrt(((offset - share[:, None] * step) ** 2).sum(axis=1))
-            np.minimum(wanted, np.maximum(least, _GROWTH * distance), out=wanted)
+            np.minimum(wanted, np.maximum(least, self.growth * distance), out=wanted)
         return wanted
 
 
-def find_creases(cage: Cage, frame: UnitFrame, most: float) -> Creases:
+def find_creases(cage: Cage, frame: UnitFrame, most: float, grading: Grading) -> Creases:
     """Find the creases of a cage.
 
     Args:
         cage: The cage.
         frame: The frame of the fit.
         most: Greatest length of any panel, in the frame.
+        grading: How panels shrink towards the creases.
     """
     mesh = cage.mesh
     vertices = frame.to_unit(cage.vertices)
@@ -84,7 +96,10 @@ def find_creases(cage: Cage, frame: UnitFrame, most: float) -> Creases:
     return Creases(
         np.concatenate([vertices[mesh.face_vertex[half[bent]]], vertices[corner]]),
         np.concatenate([step[bent], np.zeros((len(corner), 3))]),
-        np.concatenate([local[bent] * _SHRINK ** (2.0 * angle[bent] / np.pi - 2.0), corner_local * _SHRINK]),
+        np.concatenate(
+            [local[bent] * grading.shrink ** (2.0 * angle[bent] / np.pi - 2.0), corner_local * grading.shrink]
+        ),
+        grading.growth,
         fronts,
     )
 

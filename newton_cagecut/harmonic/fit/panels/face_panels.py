@@ -17,8 +17,14 @@ from ....cage import Cage
 from ...walls.frame import UnitFrame
 from .bisection import bisect
 from .coverage import uncovered_parts
-from .creases import find_creases
+from .creases import Grading, find_creases
 from .strips import fan_panels, strip_panels
+
+GRADINGS = (Grading(0.35, 1.75), Grading(0.6, 2.5), Grading(1.0, 4.0), Grading(1.0, np.inf))
+"""From fine to coarse; with the last one only long panels are divided."""
+_ENOUGH_UNKNOWNS, _MOST_UNKNOWNS = 1600, 8000
+_FLAT = 1e-9
+"""Height of triangles without area, relative to their longest edges."""
 
 
 class FacePlanes:
@@ -78,7 +84,9 @@ class FacePanels:
     valued: np.ndarray
 
 
-def face_panels(cage: Cage, frame: UnitFrame, planes: FacePlanes, most: float) -> FacePanels:
+def face_panels(
+    cage: Cage, frame: UnitFrame, planes: FacePlanes, most: float, grading: Grading = GRADINGS[0]
+) -> FacePanels:
     """Divide the faces of a cage into panels.
 
     Args:
@@ -86,12 +94,13 @@ def face_panels(cage: Cage, frame: UnitFrame, planes: FacePlanes, most: float) -
         frame: Its unit frame.
         planes: The planes of its faces in the frame.
         most: Greatest length of panels, in the frame.
+        grading: How panels shrink towards creases.
     """
-    creases = find_creases(cage, frame, most)
+    creases = find_creases(cage, frame, most, grading)
     fronted = np.unique(creases.fronts[:, 0]).tolist()
     uncovered = uncovered_parts(cage)
-    plain = ~np.isin(cage.triangle_face, fronted)
     vertices = frame.to_unit(cage.vertices)
+    plain = ~np.isin(cage.triangle_face, fronted) & ~_is_flat(vertices[cage.triangles])
     corner = cage.triangle_face[plain][:, None] * cage.vertex_count + cage.triangles[plain]
     corner, number = np.unique(corner, return_inverse=True)
     points, nodes, source = bisect(
@@ -115,6 +124,13 @@ def face_panels(cage: Cage, frame: UnitFrame, planes: FacePlanes, most: float) -
     return FacePanels(*(np.concatenate(column) for column in (corners, nodes, face, charged, valued)))
 
 
+def _is_flat(corners: np.ndarray) -> np.ndarray:
+    """Whether triangles have no area, as some of a face with corners in a row have, shape (triangle_count,)."""
+    edge = np.roll(corners, -1, axis=1) - corners
+    area_vector = np.cross(edge[:, 0], edge[:, 1])
+    return (area_vector**2).sum(axis=1) < (_FLAT * (edge**2).sum(axis=2).max(axis=1)) ** 2
+
+
 def _part(
     planes: FacePlanes, face: int, place: np.ndarray, nodes: np.ndarray, charged: bool, valued: bool
 ) -> tuple[np.ndarray, ...]:
@@ -133,3 +149,28 @@ def _convex_parts(cage: Cage, planes: FacePlanes, face: int) -> list[np.ndarray]
     loop = np.asarray(cage.faces[face])
     triangles = cage.triangles[cage.triangle_face == face]
     return [polygon[[np.flatnonzero(loop == vertex)[0] for vertex in triangle]] for triangle in triangles]
+
+
+def affordable_panels(cage: Cage, frame: UnitFrame, planes: FacePlanes, most: float) -> FacePanels:
+    """Panels of the finest grading that leaves no more unknowns than a solve is quick for.
+
+    Args:
+        cage: The cage.
+        frame: Its unit frame.
+        planes: The planes of its faces in the frame.
+        most: Greatest length of panels, in the frame.
+
+    Raises:
+        ValueError: There are too many faces for any.
+    """
+    for grading in GRADINGS:
+        panels = face_panels(cage, frame, planes, most, grading)
+        count = len(np.unique(panels.nodes[panels.charged]))
+        if count <= _ENOUGH_UNKNOWNS:
+            return panels
+    if count > _MOST_UNKNOWNS:
+        raise ValueError(
+            f"a fit of this cage of {cage.face_count} faces has {count} unknowns, {_MOST_UNKNOWNS} at most: "
+            "take correction='harmonic'"
+        )
+    return panels
