@@ -130,17 +130,18 @@ class Body:
 
 @wp.kernel(enable_backward=False)
 def pull_residual(
-    dt: float,
+    force_scale: float,
+    stiffness_scale: float,
     stiffness: float,
     target: wp.vec3,
     positions: wp.array[wp.vec3],
-    predicted: wp.array[wp.vec3],
+    guess: wp.array[wp.vec3],
     residual: wp.array[wp.vec3],
     blocks: wp.array[wp.mat33],
 ):
     """A spring on vertex 0."""
-    residual[0] += dt * stiffness * (target - positions[0]) - dt * dt * stiffness * predicted[0]
-    blocks[0] += dt * dt * stiffness * wp.identity(3, dtype=float)
+    residual[0] += force_scale * stiffness * (target - positions[0]) - stiffness_scale * stiffness * guess[0]
+    blocks[0] += stiffness_scale * stiffness * wp.identity(3, dtype=float)
 
 
 @wp.kernel(enable_backward=False)
@@ -155,15 +156,15 @@ class Spring:
     def __init__(self, body, stiffness, target):
         self.body, self.stiffness, self.target = body, stiffness, wp.vec3(*target)
 
-    def add_residual(self, dt, predicted, residual, blocks):
+    def add_residual(self, scales, guess, earlier, residual, blocks):
         """Add the spring's force."""
-        self.dt = dt
-        inputs = [dt, self.stiffness, self.target, self.body.x, predicted, residual, blocks]
+        self.scale = scales.stiffness * self.stiffness
+        inputs = [scales.force, scales.stiffness, self.stiffness, self.target, self.body.x, guess, residual, blocks]
         wp.launch(pull_residual, dim=1, inputs=inputs, device="cpu")
 
     def add_product(self, direction, product):
         """Add the spring's stiffness."""
-        inputs = [self.stiffness * self.dt * self.dt, direction, product]
+        inputs = [self.scale, direction, product]
         wp.launch(pull_product, dim=1, inputs=inputs, device="cpu")
 
 

@@ -61,11 +61,13 @@ def test_rest_stays_at_rest_to_the_bit(dimension, model):
 
 @both_dimensions
 def test_free_fall_is_exact(dimension):
-    """A free body falls rigidly along the backward-Euler parabola, and needs hardly any iteration."""
+    """A free body falls rigidly along the parabola."""
     body = Body(dimension, cells=(1, 2, 2), points=3, young=1e5)
     body.run(60, body.gravity)
-    np.testing.assert_allclose(body.velocities, np.broadcast_to(body.gravity * 60 * DT, (body.count, 3)), atol=2e-5)
-    expected = body.rest + body.gravity * DT**2 * 60 * 61 / 2
+    np.testing.assert_allclose(body.velocities, np.broadcast_to(body.gravity * 60 * DT, (body.count, 3)), atol=1e-4)
+    mass = 1000.0 * body.volume
+    np.testing.assert_allclose(body.momentum() / mass, body.gravity * 60 * DT, atol=1e-5)
+    expected = body.rest + body.gravity * (60 * DT) ** 2 / 2
     np.testing.assert_allclose(body.positions, expected, atol=1e-5)
     assert body.system.energy(body.x, body.v).elastic < 1e-7
 
@@ -100,7 +102,7 @@ def test_hung_box_settles_at_static_equilibrium(dimension):
     """A hung box comes to rest where the energy is least, found independently."""
     body = Body(dimension, cells=(1, 1, 2), points=3, fix_top=True, young=2e4, damping=0.02)
     expected = static_positions(body)
-    body.run(150, body.gravity)
+    body.run(240, body.gravity)
     sag = (expected @ body.up).min()
     assert sag < -0.02
     np.testing.assert_allclose(body.positions, expected, atol=2e-3 * abs(sag))
@@ -169,27 +171,26 @@ def test_neo_hookean_recovers(dimension, start, young):
 
 
 @both_dimensions
-def test_overlong_step_is_cut_without_losing_momentum(dimension):
-    """Velocities that would turn the body inside out in one step are cut; the linear momentum stays."""
+def test_wild_velocities_add_no_energy(dimension):
+    """Velocities that would turn the body inside out in one step add no energy; the linear momentum stays."""
     body = Body(dimension, cells=(1, 1, 2), points=3, young=1e4)
     before = body.place(velocities=body.random(6, 60.0)).momentum()
-    kinetic = body.system.energy(body.x, body.v).kinetic
-    start = body.positions
-    body.run(1)
-    F_change = body.deformation(body.positions - start) - np.eye(3)
-    assert np.linalg.norm(F_change, axis=(1, 2)).max() == pytest.approx(1.0, rel=1e-3)
-    assert body.system.energy(body.x, body.v).kinetic < 0.5 * kinetic
+    start = body.energy()
+    for _ in range(20):
+        assert body.run(1).energy() < start
     np.testing.assert_allclose(body.momentum(), before, atol=1e-4 * np.abs(before).max())
 
 
 @both_dimensions
-def test_fixed_vertices_carry_the_body(dimension):
-    """Fixed vertices keep their velocity and drag the rest along."""
+def test_fixed_vertices_stay_whatever_their_velocity(dimension):
+    """Fixed vertices do not travel, and have no velocity after a step; moved by hand they drag the rest along."""
     body = Body(dimension, fix_top=True, young=1e6, damping=0.05)
-    velocities = np.where(body.fixed[:, None], [0.4, 0.0, 0.0], 0.0)
-    body.place(velocities=velocities).run(90)
-    assert np.array_equal(body.velocities[body.fixed], velocities[body.fixed].astype(np.float32))
-    np.testing.assert_allclose(body.velocities, np.broadcast_to([0.4, 0.0, 0.0], (body.count, 3)), atol=5e-3)
+    body.place(velocities=np.where(body.fixed[:, None], [0.4, 0.0, 0.0], 0.0)).run(30)
+    assert np.array_equal(body.positions, body.rest.astype(np.float32))
+    assert not body.velocities.any()
+    positions = body.rest + np.where(body.fixed[:, None], [0.01, 0.0, 0.0], 0.0)
+    body.place(positions=positions).run(240)
+    np.testing.assert_allclose(body.positions, body.rest + [0.01, 0.0, 0.0], atol=1e-4)
 
 
 @both_dimensions

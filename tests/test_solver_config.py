@@ -30,7 +30,7 @@ def model() -> newton.Model:
 
 def test_defaults():
     """Without a configuration the solver takes the defaults."""
-    assert Config() == Config(tolerance=1.0e-5, max_iterations=150)
+    assert Config() == Config(integrator="tr_bdf2", newton_iterations=1, tolerance=1.0e-5, max_iterations=150)
     assert make_solver(walks=8)[1].config == Config()
 
 
@@ -81,7 +81,9 @@ def test_values_out_of_range_are_refused(model, options, error, match):
 
 def test_unknown_options_are_refused(model):
     """An unknown option is named, with those that there are."""
-    with pytest.raises(TypeError, match="no option tolerence; there are max_iterations, tolerance"):
+    with pytest.raises(
+        TypeError, match="no option tolerence; there are integrator, newton_iterations, max_iterations, tolerance"
+    ):
         cagecut.SolverCageCut(model, tolerence=0.1)
     with pytest.raises(TypeError, match=r"config must be a SolverCageCut\.Config, or be left out, got a dict"):
         cagecut.SolverCageCut(model, {"tolerance": 0.1})

@@ -3,19 +3,23 @@
 
 """The elastic body inside a cage: materials, quadrature and the reduced system (paper, section 6.1)."""
 
-from .backward_euler import LinearTerm
+from .backward_euler import LinearTerm, TermScales
 from .constitutive import ConstitutiveModel
 from .energy import Energy
 from .material import Material
 from .quadrature import exact_volumes, sample_quadrature
-from .system import ReducedSystem
+from .stages.step_record import COUNT_NAMES as STEP_COUNTS
+from .system import INTEGRATORS, ReducedSystem
 
 __all__ = [
+    "INTEGRATORS",
+    "STEP_COUNTS",
     "ConstitutiveModel",
     "Energy",
     "LinearTerm",
     "Material",
     "ReducedSystem",
+    "TermScales",
     "exact_volumes",
     "sample_quadrature",
 ]

@@ -21,13 +21,17 @@ class BodyArrays:
     vertex_count: wp.array[int]
     """Number of vertices in use, shape (1,)."""
     fixed: wp.array[int]
-    """Nonzero for vertices that keep their velocity, one a vertex."""
+    """Nonzero for vertices that a step does not move, one a vertex."""
     rest: wp.array[wp.vec3]
     """Rest positions, one a vertex [m]."""
     rotation: wp.array[wp.mat33]
     """Rotation from the gradients' frame to that of the rest positions, shape (1,)."""
     normal: wp.array[wp.vec3d]
     """Unit normal of a plane body's plane, shape (1,); none of a solid one."""
+    piece: wp.array[int]
+    """The piece that a vertex belongs to, one a vertex."""
+    piece_count: wp.array[int]
+    """Number of pieces, shape (1,)."""
     material: wp.array[wp.vec4d]
     """Lame's constants mu and lambda [Pa], damping [s] and density [kg/m^3], shape (1,)."""
     weights: wp.array2d[float]
@@ -53,8 +57,9 @@ class StepArrays:
     """What a step works on."""
 
     scales: wp.array[wp.float64]
-    """Factors of forces and of stiffness in the system, shape (2,): the time step [s], and it times itself and the
-    damping [s^2]."""
+    """Factors of forces and of stiffness in the system. A single Newton step from the start has two: the time step [s],
+    and it times itself and the damping [s^2]. A stage of scale k has four: k^2, k times k and the damping [s^2], the
+    share of the damping in that, and a factor of the forces at the start."""
     displacement: wp.array[wp.vec3]
     """Displacements from rest before the step, one a vertex [m]."""
     lag: wp.array[wp.vec3]
@@ -101,6 +106,7 @@ def make_body_arrays(
     *,
     fixed: wp.array | None,
     rotation: wp.array | None,
+    piece: wp.array | None,
     plane: bool,
 ) -> BodyArrays:
     """The arrays of a body: those given, in place, and zeros for the others; see ``ReducedSystem``.
@@ -120,12 +126,14 @@ def make_body_arrays(
             "vertex_count": vertex_count,
             "fixed": fixed if fixed is not None else wp.zeros(capacity, dtype=int),
             "rotation": rotation if rotation is not None else wp.array([np.eye(3)], dtype=wp.mat33),
+            "piece": piece if piece is not None else wp.zeros(capacity, dtype=int),
         }
         _check(given)
         for name, array in given.items():
             setattr(body, name, array)
         if plane:
             body.normal = wp.zeros(1, dtype=wp.vec3d)
+        body.piece_count = wp.ones(1, dtype=int)
         body.material = wp.zeros(1, dtype=wp.vec4d)
         body.anchors = wp.zeros(points, dtype=int)
         body.vertex_mass = wp.zeros(capacity, dtype=float)
@@ -139,7 +147,7 @@ def make_step_arrays(body: BodyArrays) -> StepArrays:
     capacity, points = body.rest.shape[0], body.volumes.shape[0]
     step = StepArrays()
     with wp.ScopedDevice(body.rest.device):
-        step.scales = wp.zeros(2, dtype=wp.float64)
+        step.scales = wp.zeros(4, dtype=wp.float64)
         for name in ("displacement", "lag", "predicted"):
             setattr(step, name, wp.zeros(capacity, dtype=wp.vec3))
         step.stiffnesses = wp.zeros(points, dtype=Stiffness)
@@ -171,6 +179,7 @@ def _check(given: dict[str, wp.array]) -> None:
         "vertex_count": (wp.int32, (1,)),
         "fixed": (wp.int32, (capacity,)),
         "rotation": (wp.mat33, (1,)),
+        "piece": (wp.int32, (capacity,)),
     }
     for name, (dtype, shape) in expected.items():
         array = given[name]

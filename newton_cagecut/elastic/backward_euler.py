@@ -18,6 +18,7 @@ from . import limit, plane_confinement, step_kernels
 from .arrays import BodyArrays, make_linear_system, make_step_arrays
 from .conjugate_gradient import ConjugateGradient
 from .launching import record, record_block
+from .stages.step_record import StepRecord
 
 
 class Motion(NamedTuple):
@@ -29,15 +30,37 @@ class Motion(NamedTuple):
     """Velocities [m/s]."""
 
 
+class TermScales(NamedTuple):
+    """Factors of a further term in the system that is solved."""
+
+    force: float
+    """Of forces."""
+    stiffness: float
+    """Of stiffness."""
+    damping: float
+    """Of damping."""
+
+
 class LinearTerm(Protocol):
     """A term that a step adds to the system, such as contact. Both methods only launch kernels.
 
-    A force f(x) - D v with df/dx = -S adds dt^2 S + dt D to the matrix, and dt f(x) - (dt^2 S + dt D) predicted to the
-    residual, with f at the positions before the step. What it adds for fixed vertices is ignored.
+    A force f - S s - D v, with s the displacement and v the velocity after a step, and f at the positions before it,
+    adds the matrix stiffness S + damping D, with the factors of ``TermScales``. The solution changes s and v together.
+    What it adds for fixed vertices is ignored.
     """
 
-    def add_residual(self, dt: float, predicted: wp.array, residual: wp.array, blocks: wp.array) -> None:
-        """Add to the residual and to the matrix's 3x3 diagonal blocks; ``predicted`` are velocities with the guess."""
+    def add_residual(
+        self, scales: TermScales, guess: wp.array, earlier: wp.array, residual: wp.array, blocks: wp.array
+    ) -> None:
+        """Add to the residual and to the matrix's 3x3 diagonal blocks.
+
+        Args:
+            scales: The factors.
+            guess: What the matrix is multiplied with in the first guess, one a vertex: velocities or displacements.
+            earlier: What the velocity after the step lacks then of the damping's part, one a vertex [m/s].
+            residual: The residual: force f + force D earlier - matrix guess is added.
+            blocks: The diagonal blocks.
+        """
 
     def add_product(self, direction: wp.array, product: wp.array) -> None:
         """Add the matrix term's product with the direction."""
@@ -53,7 +76,7 @@ class BackwardEuler:
         tolerance: Factor by which a solve shrinks the preconditioned residual.
     """
 
-    def __init__(self, body: BodyArrays, model: str, *, max_iterations: int, tolerance: float):
+    def __init__(self, body: BodyArrays, model: str, *, max_iterations: int, tolerance: float, step_record: StepRecord):
         self.device, self.is_plane = body.rest.device, body.normal is not None
         self.body, self.arrays = body, make_step_arrays(body)
         self.system = make_linear_system(body.vertex_count, body.fixed, body.normal)
@@ -95,7 +118,8 @@ class BackwardEuler:
         if term is None:
             self.solver.solve(self._multiply)
             return
-        term.add_residual(dt, self.arrays.predicted, self.system.residual, self.system.blocks)
+        scales = TermScales(dt, dt * dt, dt)
+        term.add_residual(scales, self.arrays.predicted, self._no_forces, self.system.residual, self.system.blocks)
         self.solver.solve(lambda: self._multiply_with(term))
 
     def _multiply(self) -> None:

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Kernels of a reduced system that depend on the cage's weights only: masses and anchors.
+"""Kernels of a reduced system that an edit makes run anew: masses, anchors and the number of pieces.
 
 M_ij = sum_q rho V_q w_qi w_qj, of which a thousandth is lumped onto the diagonal: the total mass and every row's sum
 stay, and M is positive definite also where no quadrature point feels a vertex.
@@ -65,11 +65,21 @@ def lump_mass(body: BodyArrays):
     body.vertex_mass[i] = float((wp.float64(1.0) - LUMPED) * row + lumped)
 
 
+@wp.kernel(enable_backward=False)
+def count_pieces(body: BodyArrays):
+    """Number of pieces."""
+    count = int(1)
+    for i in range(body.vertex_count[0]):
+        count = wp.max(count, body.piece[i] + 1)
+    body.piece_count[0] = count
+
+
 def record_masses(body: BodyArrays) -> tuple[wp.Launch, ...]:
-    """The launches that bring anchors and masses up to date, in their order."""
+    """The launches that bring anchors, masses and the number of pieces up to date, in their order."""
     capacity, points, device = body.rest.shape[0], body.volumes.shape[0], body.rest.device
     return (
         record(find_anchors, points, [body], device),
         record(assemble_mass, (capacity, capacity), [body], device),
         record(lump_mass, capacity, [body], device),
+        record(count_pieces, 1, [body], device),
     )

@@ -16,6 +16,12 @@ from .mass import record_masses
 from .material import Material
 from .plane_confinement import find_normal
 from .stabilization import stabilize
+from .stages.scheme import SCHEMES
+from .stages.stage_integrator import StageIntegrator
+from .stages.step_record import make_step_record, read_counts
+
+INTEGRATORS = (*SCHEMES, "paper")
+"""Names of the time integrators."""
 
 
 class ReducedSystem:
@@ -36,10 +42,14 @@ class ReducedSystem:
             areas times its thickness.
         material: The material.
         vertex_count: Number of vertices in use, shape (1,) int.
-        fixed: Nonzero for vertices that keep their velocity, shape (vertex_capacity,) int; none if not given.
+        fixed: Nonzero for vertices that a step does not move, shape (vertex_capacity,) int; none if not given.
         rotation: Rotation from the gradients' frame to that of the rest positions, shape (1,) mat33; identity if not
             given.
+        piece: The piece that a vertex belongs to, counted from 0, shape (vertex_capacity,) int; all one if not given.
         thickness: Thickness of a plane body [m]; the body is solid if not given.
+        integrator: One of ``INTEGRATORS``: ``"tr_bdf2"`` or ``"backward_euler"`` (see ``stages/scheme.py``), or
+            ``"paper"`` for the paper's single step.
+        newton_iterations: Linear solves in each stage; the paper's has one.
         max_iterations: Most iterations of a solve.
         tolerance: Factor by which a solve shrinks the preconditioned residual.
 
@@ -59,7 +69,10 @@ class ReducedSystem:
         *,
         fixed: wp.array | None = None,
         rotation: wp.array | None = None,
+        piece: wp.array | None = None,
         thickness: float | None = None,
+        integrator: str = "tr_bdf2",
+        newton_iterations: int = 1,
         max_iterations: int = 150,
         tolerance: float = 1.0e-5,
     ):
@@ -68,13 +81,33 @@ class ReducedSystem:
         self.device, self.vertex_capacity, self.point_count = rest.device, rest.shape[0], weights.shape[0]
         self.thickness, self.material = thickness, material
         body = self.arrays = make_body_arrays(
-            rest, weights, gradients, volumes, vertex_count, fixed=fixed, rotation=rotation, plane=self.is_plane
+            rest,
+            weights,
+            gradients,
+            volumes,
+            vertex_count,
+            fixed=fixed,
+            rotation=rotation,
+            piece=piece,
+            plane=self.is_plane,
         )
         self.rest, self.weights, self.gradients, self.volumes = body.rest, body.weights, body.gradients, body.volumes
-        self.vertex_count, self.fixed, self.rotation = body.vertex_count, body.fixed, body.rotation
+        self.vertex_count, self.fixed, self.rotation, self.piece = (
+            body.vertex_count,
+            body.fixed,
+            body.rotation,
+            body.piece,
+        )
         self.mass, self.vertex_mass = body.mass, body.vertex_mass
         self.stabilizing_stiffness, self.stabilizing_mass = body.stabilizing_stiffness, body.stabilizing_mass
-        self._integrator = BackwardEuler(body, material.model, max_iterations=max_iterations, tolerance=tolerance)
+        self.record = make_step_record(self.device, None, None)
+        limits = {"max_iterations": max_iterations, "tolerance": tolerance, "step_record": self.record}
+        if integrator == "paper":
+            self._integrator = BackwardEuler(body, material.model, **limits)
+        else:
+            self._integrator = StageIntegrator(
+                body, material.model, SCHEMES[integrator], newton_iterations=newton_iterations, **limits
+            )
         self._energy = EnergyMeter(body, material.model)
         self._refresh_launches = record_masses(body)
         if self.is_plane:
@@ -140,7 +173,9 @@ class ReducedSystem:
     ) -> None:
         """Advance the vertices by one step; outputs may be the inputs.
 
-        A step that would change F by more than one (Frobenius norm) somewhere is cut to that; see ``limit.py``.
+        A stage's solution is taken as far as the incremental potential of each piece does not rise. A step whose result
+        is not finite is not made: the outputs are the inputs, and ``record`` counts it. The paper's single step is cut
+        instead where it would change F by more than one (Frobenius norm); see ``limit.py``.
 
         Args:
             positions: Positions, shape (vertex_capacity,) vec3 [m].
@@ -154,6 +189,16 @@ class ReducedSystem:
         """
         before, after = Motion(positions, velocities), Motion(positions_out, velocities_out)
         self._integrator.step(before, after, dt, gravity=gravity, forces=forces, term=term)
+
+    def step_statistics(self) -> dict[str, object]:
+        """What the steps were like, read on the host; the paper's single step is not recorded.
+
+        ``steps`` in all, of which ``refused``: their result was not finite (``reason``), so they were not made;
+        ``limited``: a solution was not taken whole, or velocities were too wild for the step; ``stalled``: a solution
+        was not taken at all; ``missed``: a solve ended short of the tolerance. ``iterations`` of the last step's
+        solves and ``most_iterations`` of any; ``residual`` and ``worst_residual``: factors by which solves shrank it.
+        """
+        return read_counts(self.record.counts.numpy(), self.record.residuals.numpy())
 
     def energy(self, positions: wp.array, velocities: wp.array) -> Energy:
         """Energies of a state, read on the host: for reports, not for captured code.

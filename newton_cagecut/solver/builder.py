@@ -91,9 +91,9 @@ def add_cage_body(
             (n, 3) [m] and triangles (m, 3). In a plane cage a flat ``Surface``, or points (n, 2) and triangles.
         material: The elastic material; the default is soft rubber.
         xform: Pose of the rest frame in the world.
-        velocity: Initial velocity [m/s].
-        fixed: Cage vertices that do not move: their indices, or a mask over all. A vertex that a cut makes
-            on a face, among fixed ones, is fixed too.
+        velocity: Initial velocity [m/s]; fixed vertices do not travel with it.
+        fixed: Cage vertices that no step moves: their indices, or a mask over all; to move them, write their positions
+            to a state. A vertex that a cut makes on a face, among fixed ones, is fixed too.
         walks: Walks a point; 256 on a CPU and 2048 (the paper's) on CUDA by default.
         quadrature: Wanted number of quadrature points, by default 8 for each cage vertex and at least 300. 0 makes a
             body that is moved by its cage vertices alone, without elasticity.

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 
+from ..elastic import INTEGRATORS
 from ..geometry import as_index, as_number
 
 
@@ -19,6 +20,14 @@ class Config:
         ValueError: If a value is out of its range.
     """
 
+    integrator: str = "tr_bdf2"
+    """How time goes on: ``"tr_bdf2"``, of second order, which keeps spin and vibrations; ``"backward_euler"``, of first
+    order, which damps both; or ``"paper"``, a single Newton step of it from the start positions (paper, section 6.1),
+    which damps rotation the more, the stiffer the body."""
+
+    newton_iterations: int = 1
+    """Linear solves in each implicit stage (``"tr_bdf2"`` has two of these); at least 1, and 1 with ``"paper"``."""
+
     max_iterations: int = 150
     """Most iterations of a step's linear solve; at least 1."""
 
@@ -26,6 +35,15 @@ class Config:
     """Factor by which a step's linear solve shrinks the preconditioned residual, in (0, 1)."""
 
     def __post_init__(self) -> None:
+        if self.integrator not in INTEGRATORS:
+            names = ", ".join(map(repr, INTEGRATORS))
+            raise ValueError(f"SolverCageCut integrator must be one of {names}, got {self.integrator!r}")
+        iterations = as_index(self.newton_iterations, "SolverCageCut newton_iterations")
+        object.__setattr__(self, "newton_iterations", iterations)
+        if iterations < 1:
+            raise ValueError(f"SolverCageCut newton_iterations must be at least 1, got {iterations}")
+        if iterations > 1 and self.integrator == "paper":
+            raise ValueError(f"SolverCageCut newton_iterations must be 1 with integrator='paper', got {iterations}")
         object.__setattr__(self, "max_iterations", as_index(self.max_iterations, "SolverCageCut max_iterations"))
         object.__setattr__(self, "tolerance", as_number(self.tolerance, "SolverCageCut tolerance"))
         if self.max_iterations < 1:

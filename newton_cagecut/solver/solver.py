@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 
@@ -12,11 +13,13 @@ import newton
 import numpy as np
 import warp as wp
 
+from ..geometry import as_number
 from ..section import Blade
 from .body.body_pieces import BodyPiece
 from .body.cage_body import CageBody
 from .body.edit_stamps import EditStamps, state_edits
 from .body.simulated_body import SimulatedBody
+from .body.step_watch import StepWatch
 from .builder import register_custom_attributes
 from .config import Config
 from .cut.body_cut import BodyCut
@@ -32,8 +35,8 @@ class SolverCageCut(newton.solvers.SolverBase):
     """Simulates the cage bodies of a model and cuts them.
 
     Each body is a reduced elastic model whose shape functions are the harmonic coordinates of its cage, advanced by
-    one Newton step of backward Euler a step (paper, section 6.1). ``step`` only launches kernels, so it can be captured
-    in a CUDA graph, which stays valid across cuts.
+    TR-BDF2 or, if asked for, by the paper's single Newton step of backward Euler (section 6.1); see :class:`Config`.
+    ``step`` only launches kernels, so it can be captured in a CUDA graph, which stays valid across cuts.
 
     Args:
         model: The model, with bodies added by ``add_cage_body``.
@@ -81,6 +84,8 @@ class SolverCageCut(newton.solvers.SolverBase):
             ]
         self._bodies = tuple(CageBody(body) for body in self._simulated)
         self._viewer = SurfaceViewer()
+        labels, systems = zip(*((body.label, body.system) for body in self._simulated), strict=True)
+        self._watch = StepWatch(labels, systems, model.device)
 
     @classmethod
     def register_custom_attributes(cls, builder: newton.ModelBuilder) -> None:
@@ -137,11 +142,17 @@ class SolverCageCut(newton.solvers.SolverBase):
 
         Raises:
             TypeError: The state is none of a model with cage bodies.
-            ValueError: The contacts were reduced by body pairs, or ``state_in`` missed an edit of a body.
+            ValueError: The time step is not positive and finite, the contacts were reduced by body pairs, or
+                ``state_in`` missed an edit of a body.
         """
+        seconds = as_number(dt, "SolverCageCut.step dt")
+        if not 0.0 < seconds < math.inf:
+            raise ValueError(f"SolverCageCut.step dt must be a positive number of seconds, got {dt}")
         self.validate_observables(observables, contacts)
         self._require_unreduced_contacts(contacts)
         self._stamps.compare(state_in)
+        if not self.model.device.is_capturing:
+            self._watch.warn()
         if state_in is not state_out:
             for name in ("body_q", "body_qd", "joint_q", "joint_qd"):
                 source, target = getattr(state_in, name, None), getattr(state_out, name, None)
@@ -149,7 +160,8 @@ class SolverCageCut(newton.solvers.SolverBase):
                     wp.copy(target, source)
             wp.copy(state_edits(state_out), state_edits(state_in))
         for body in self._simulated:
-            body.step(state_in, state_out, contacts, dt)
+            body.step(state_in, state_out, contacts, seconds)
+        self._watch.note()
 
     def warm_up(self, *, progress: bool | None = None) -> None:
         """Compile and load every kernel that the scene can need, collisions and cuts included.
@@ -266,6 +278,16 @@ class SolverCageCut(newton.solvers.SolverBase):
         """Show the surfaces in any Newton viewer, with the topology of this frame; caps have a colour of their own."""
         for body in self._simulated:
             self._viewer.log(viewer, body, state)
+
+    def statistics(self) -> list[dict[str, object]]:
+        """How the steps of each body went, one record a body, read on the host.
+
+        Each has its ``body`` and, of a body with elasticity: ``steps`` in all, of which ``refused`` could not be made,
+        for the ``reason`` of the last; ``limited``, whose solution was not taken whole; ``stalled``, where it was not
+        taken at all; ``missed``, where a solve ended short of the tolerance; ``iterations`` and ``residual`` of the
+        last, ``most_iterations`` and ``worst_residual`` of all. Steps with integrator="paper" are not recorded.
+        """
+        return self._watch.statistics()
 
     def plan(self) -> list[PlanEntry]:
         """What the scene uses, what was left out and why, and the bytes of each."""

@@ -76,6 +76,7 @@ class SimulatedBody:
         )
         self.rest = wp.clone(model.particle_q[self.vertices])
         self.fixed = wp.array(self._padded(definition.fixed), dtype=wp.int32, device=self.device)
+        self.piece = wp.zeros(self.capacity.vertices, dtype=wp.int32, device=self.device)
         world = int(model.particle_world.numpy()[vertex_start])
         world_slot = world if world >= 0 else model.gravity.shape[0] - 1
         self.gravity = model.gravity[world_slot : world_slot + 1]
@@ -277,6 +278,7 @@ class SimulatedBody:
     def refresh(self) -> None:
         """Bring what depends on the weights up to date after an edit."""
         if self.system is not None:
+            self.piece.assign(self._padded(self.cage.vertex_piece))
             self.system.stabilize(self.cage.vertices, self.cage.mesh.edges)
             self.system.refresh()
             wp.copy(self.model.particle_mass[self.vertices], self.system.vertex_mass)
@@ -352,6 +354,9 @@ class SimulatedBody:
             fixed=self.fixed,
             rotation=wp.array([self._frame.rotation], dtype=wp.mat33, device=self.device),
             thickness=self.definition.thickness,
+            piece=self.piece,
+            integrator=self.config.integrator,
+            newton_iterations=self.config.newton_iterations,
             max_iterations=self.config.max_iterations,
             tolerance=self.config.tolerance,
         )

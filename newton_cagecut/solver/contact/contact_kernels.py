@@ -70,14 +70,21 @@ def list_touching(rows: SurfaceRows, points: TouchedPoints):
 
 
 @wp.kernel(enable_backward=False)
-def find_contact_residual(dt: float, predicted: wp.array[wp.vec3], rows: SurfaceRows, points: TouchedPoints):
-    """Residual and system block of each touching point."""
+def find_contact_residual(
+    scales: wp.vec3,
+    guess: wp.array[wp.vec3],
+    earlier: wp.array[wp.vec3],
+    rows: SurfaceRows,
+    points: TouchedPoints,
+):
+    """Residual and system block of each touching point; scales of force, stiffness and damping."""
     slot = wp.tid()
     if slot < points.touching_count[0]:
         i = points.touching[slot]
-        block = dt * dt * points.stiffness[i] + dt * points.damping[i]
+        block = scales[1] * points.stiffness[i] + scales[2] * points.damping[i]
+        force = points.force[i] + points.damping[i] * at_surface_point(i, earlier, rows)
         points.system[slot] = block
-        points.product[slot] = dt * points.force[i] - block * at_surface_point(i, predicted, rows)
+        points.product[slot] = scales[0] * force - block * at_surface_point(i, guess, rows)
 
 
 @wp.kernel(enable_backward=False)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import newton
 import warp as wp
 
+from ...elastic import TermScales
 from . import contact_kernels
 from .contact_arrays import contact_model, contact_state, make_touched_points, soft_contacts
 
@@ -55,9 +56,11 @@ class ContactTerm:
         )
         self._launch_points(contact_kernels.list_touching, [])
 
-    def add_residual(self, dt: float, predicted: wp.array, residual: wp.array, blocks: wp.array) -> None:
+    def add_residual(
+        self, scales: TermScales, guess: wp.array, earlier: wp.array, residual: wp.array, blocks: wp.array
+    ) -> None:
         """Add contact to the residual and to the matrix's diagonal blocks."""
-        self._launch_points(contact_kernels.find_contact_residual, [dt, predicted])
+        self._launch_points(contact_kernels.find_contact_residual, [wp.vec3(*scales), guess, earlier])
         self._launch_vertices(contact_kernels.add_contact_residual, [residual, blocks])
 
     def add_product(self, direction: wp.array, product: wp.array) -> None:

@@ -1,0 +1,62 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Time integrators as lists of implicit stages.
+
+A stage of scale k minimises |x - target|_M^2 / 2 - impulse . x + k^2 Psi(x). With s the displacement since the start of
+the step, r that which the stage before has reached, v the velocity at the start, and a the acceleration there:
+
+- backward Euler: one stage, k = dt, target dt v, velocity s / k at the end;
+- TR-BDF2 (Bank et al. 1985), with k = (1 - 1 / sqrt 2) dt: the trapezoidal rule over 2 k, target 2 k v + k^2 a and
+  velocity s / k - v at its end; then the two-step backward formula to dt, target 2 w r - sqrt(2) k v and velocity
+  (s - w r) / k, where w = (1 + sqrt 2) / 2.
+
+TR-BDF2 takes one step's state and no history, so that a state can be set, swapped and cut at any time; it is of second
+order, and damps what it cannot resolve. Of the L-stable one-step methods that were measured it alone keeps the spin
+of a stiff body: two- and three-stage SDIRK lose 40 % of it in a second at 10 rad/s, since their first stage is of first
+order; the two-step formula alone loses 5 %, and needs history.
+
+Damping and further terms act at the end of a stage alone: they take the trapezoidal rule's whole impulse there.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+
+class Stage(NamedTuple):
+    """The factors of one stage, for a time step of 1 s."""
+
+    scale: float
+    """k [s]."""
+    target_velocity: float
+    """Factor of v in the target [s]."""
+    target_reached: float
+    """Factor of r in the target."""
+    velocity_kept: float
+    """Factor of v in what the end velocity lacks of s / k."""
+    velocity_reached: float
+    """Factor of r in that [1/s]."""
+    force_share: float
+    """Constant forces and further terms, in k^2."""
+    damping_share: float
+    """Damping, in k, over that of the mean rate of strain in the stage."""
+    start_share: float
+    """Factor of the forces at the start."""
+
+
+_SCALE = 1.0 - math.sqrt(0.5)
+_WEIGHT = 0.5 * (1.0 + math.sqrt(2.0))
+
+BACKWARD_EULER = (Stage(1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0),)
+"""Backward Euler."""
+
+TR_BDF2 = (
+    Stage(_SCALE, 2.0 * _SCALE, 0.0, 1.0, 0.0, 2.0, 1.0, 1.0),
+    Stage(_SCALE, -math.sqrt(2.0) * _SCALE, 2.0 * _WEIGHT, 0.0, _WEIGHT / _SCALE, 1.0, math.sqrt(0.5), 0.0),
+)
+"""The trapezoidal rule, then the two-step backward formula."""
+
+SCHEMES = {"tr_bdf2": TR_BDF2, "backward_euler": BACKWARD_EULER}
+"""The stages by the integrator's name."""

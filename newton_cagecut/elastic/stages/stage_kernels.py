@@ -1,0 +1,240 @@
+# SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
+# SPDX-License-Identifier: Apache-2.0
+
+"""Kernels of the stages of a step: targets, first guesses, residuals, and the state at the end."""
+
+from __future__ import annotations
+
+import warp as wp
+
+from ..arrays import BodyArrays, LinearSystem, StepArrays
+from ..step_kernels import tie
+from ..stiffness import vertex_block
+from .stage_arrays import PieceArrays, StageArrays
+from .step_record import BAD_FORCE, BAD_RESULT, BAD_START, StepRecord
+
+wp.set_module_options({"enable_backward": False})
+
+
+@wp.func
+def is_finite(v: wp.vec3) -> bool:
+    """Whether all components are finite."""
+    return wp.isfinite(v[0]) and wp.isfinite(v[1]) and wp.isfinite(v[2])
+
+
+@wp.func
+def confined(v: wp.vec3d, body: BodyArrays) -> wp.vec3d:
+    """The part of a vector in a plane body's plane; of a solid body all of it."""
+    if body.normal.shape[0] > 0:
+        return v - wp.dot(body.normal[0], v) * body.normal[0]
+    return v
+
+
+@wp.kernel(enable_backward=False)
+def begin_stages(
+    positions: wp.array[wp.vec3],
+    velocities: wp.array[wp.vec3],
+    gravity: wp.array[wp.vec3],
+    forces: wp.array[wp.vec3],
+    body: BodyArrays,
+    step: StepArrays,
+    stage: StageArrays,
+    record: StepRecord,
+):
+    """Where a step starts from."""
+    i = wp.tid()
+    velocity = wp.vec3d()
+    row_mass = wp.float64(0.0)
+    if i < body.vertex_count[0]:
+        if not (is_finite(positions[i]) and is_finite(velocities[i])):
+            wp.atomic_max(record.reason, 0, BAD_START)
+        elif not (is_finite(gravity[0]) and is_finite(forces[i])):
+            wp.atomic_max(record.reason, 0, BAD_FORCE)
+        if body.fixed[i] == 0:
+            velocity = confined(wp.vec3d(velocities[i]), body)
+        for j in range(body.vertex_count[0]):
+            row_mass += wp.float64(body.mass[i, j])
+    stage.row_mass[i] = row_mass
+    stage.start[i] = positions[i]
+    stage.velocity[i] = velocity
+    stage.reached[i] = wp.vec3d()
+    step.displacement[i] = positions[i] - body.rest[i]
+    step.predicted[i] = wp.vec3()
+
+
+@wp.kernel(enable_backward=False)
+def set_scales(
+    scale: wp.float64, damping_share: wp.float64, start_share: wp.float64, body: BodyArrays, step: StepArrays
+):
+    """The factors of a stage; see ``Stage``."""
+    damping = damping_share * body.material[0][2]
+    step.scales[0] = scale * scale
+    step.scales[1] = scale * (scale + damping)
+    step.scales[2] = damping / (scale + damping)
+    step.scales[3] = start_share
+
+
+@wp.kernel(enable_backward=False)
+def begin_stage(
+    target_velocity: wp.float64,
+    target_reached: wp.float64,
+    velocity_kept: wp.float64,
+    velocity_reached: wp.float64,
+    force_scale: wp.float64,
+    gravity: wp.array[wp.vec3],
+    forces: wp.array[wp.vec3],
+    body: BodyArrays,
+    stage: StageArrays,
+):
+    """Targets of a stage, and the impulses of its loads."""
+    i = wp.tid()
+    target, earlier, impulse = wp.vec3d(), wp.vec3d(), wp.vec3d()
+    if i < body.vertex_count[0]:
+        v, reached = stage.velocity[i], stage.reached[i]
+        target = target_velocity * v + target_reached * reached
+        earlier = velocity_kept * v + velocity_reached * reached
+        weight = stage.row_mass[i] * wp.vec3d(gravity[0])
+        load = confined(weight + wp.vec3d(forces[i]), body)
+        impulse = force_scale * load
+        stage.load[i] = load
+    stage.target[i] = target
+    stage.earlier_velocity[i] = wp.vec3(earlier)
+    stage.impulse[i] = impulse
+
+
+@wp.kernel(enable_backward=False)
+def turn_strain(body: BodyArrays, step: StepArrays, pieces: PieceArrays):
+    """Turn stress and stiffness of the reached shape with the first guess."""
+    q = wp.tid()
+    R = wp.mat33(pieces.rotation[body.piece[body.anchors[q]]])
+    stiffness = step.stiffnesses[q]
+    stiffness.left = R * stiffness.left
+    step.stiffnesses[q] = stiffness
+    step.tensions[q] = R * step.tensions[q]
+
+
+@wp.kernel(enable_backward=False)
+def show_moved(body: BodyArrays, step: StepArrays, stage: StageArrays, system: LinearSystem):
+    """What strain, ties and further terms see of the displacements now."""
+    i = wp.tid()
+    moved = wp.vec3d(stage.moved[i])
+    stage.moved_single[i] = wp.vec3(moved)
+    step.displacement[i] = wp.vec3(wp.vec3d(stage.start[i]) - wp.vec3d(body.rest[i]) + moved)
+    step.predicted[i] = wp.vec3(step.scales[2] * (moved - stage.guess[i]))
+    system.solution[i] = wp.vec3()
+
+
+@wp.kernel(enable_backward=False)
+def find_inertial_residual(body: BodyArrays, step: StepArrays, stage: StageArrays, system: LinearSystem):
+    """Residual and diagonal blocks without the quadrature's part."""
+    i = wp.tid()
+    r = wp.vec3d()
+    block = wp.identity(3, dtype=float)
+    if i < body.vertex_count[0]:
+        r += stage.impulse[i]
+        for j in range(body.vertex_count[0]):
+            r += wp.float64(body.mass[i, j]) * (stage.target[j] - stage.moved[j])
+        block = body.mass[i, i] * block
+        if body.stabilizing_stiffness[i, i] > 0.0:
+            mu = body.material[0][0]
+            r -= mu * step.scales[0] * wp.vec3d(tie(i, step.displacement, body))
+            r -= mu * step.scales[1] * wp.vec3d(tie(i, step.predicted, body))
+            ties = float(mu * step.scales[1]) * body.stabilizing_stiffness[i, i]
+            block += ties * wp.identity(3, dtype=float)
+    system.residual[i] = wp.vec3(r)
+    system.blocks[i] = block
+
+
+@wp.kernel(enable_backward=False)
+def add_elastic_residual(body: BodyArrays, step: StepArrays, stage: StageArrays, system: LinearSystem):
+    """Add the quadrature's part, and keep the residual without it."""
+    i = wp.tid()
+    r, block = wp.vec3(system.residual[i]), wp.mat33(system.blocks[i])
+    stage.force[i] = r
+    if i < body.vertex_count[0]:
+        for q in range(body.volumes.shape[0]):
+            r -= step.tensions[q] * body.gradients[q, i]
+            block += vertex_block(step.stiffnesses[q], body.gradients[q, i])
+    system.residual[i] = wp.vec3(confined(wp.vec3d(r), body))
+    system.blocks[i] = block
+
+
+@wp.kernel(enable_backward=False)
+def multiply_inertia(body: BodyArrays, step: StepArrays, stage: StageArrays, system: LinearSystem):
+    """The matrix without the quadrature's part, times the change of the solution."""
+    i = wp.tid()
+    result = wp.vec3()
+    if i < body.vertex_count[0] and body.fixed[i] == 0:
+        for j in range(body.vertex_count[0]):
+            result += body.mass[i, j] * system.solution[j]
+        if body.stabilizing_stiffness[i, i] > 0.0:
+            result += float(body.material[0][0] * step.scales[1]) * tie(i, system.solution, body)
+    stage.product[i] = result
+
+
+@wp.kernel(enable_backward=False)
+def take_solution(body: BodyArrays, stage: StageArrays, pieces: PieceArrays, system: LinearSystem):
+    """Move the vertices by the part of the solution that was chosen."""
+    i = wp.tid()
+    if i < body.vertex_count[0] and body.fixed[i] == 0:
+        change = confined(wp.vec3d(system.solution[i]), body)
+        factor = pieces.factor[body.piece[i]]
+        if factor > wp.float64(0.0):
+            stage.moved[i] = stage.moved[i] + factor * change
+
+
+@wp.kernel(enable_backward=False)
+def end_stage(body: BodyArrays, step: StepArrays, stage: StageArrays):
+    """Hand the displacements on to the next stage."""
+    i = wp.tid()
+    moved = stage.moved[i]
+    stage.reached[i] = moved
+    step.displacement[i] = wp.vec3(wp.vec3d(stage.start[i]) - wp.vec3d(body.rest[i]) + moved)
+    step.predicted[i] = wp.vec3()
+
+
+@wp.kernel(enable_backward=False)
+def end_stages(
+    scale: wp.float64,
+    velocities: wp.array[wp.vec3],
+    body: BodyArrays,
+    stage: StageArrays,
+    record: StepRecord,
+):
+    """Positions and velocities at the end of the step; spare vertices are copied."""
+    i = wp.tid()
+    position, velocity = wp.vec3(stage.start[i]), wp.vec3(velocities[i])
+    if i < body.vertex_count[0]:
+        if body.fixed[i] != 0:
+            velocity = wp.vec3()
+        else:
+            moved = stage.moved[i]
+            velocity = wp.vec3(confined(moved / scale - wp.vec3d(stage.earlier_velocity[i]), body))
+            place = wp.vec3d(position) + moved
+            if body.normal.shape[0] > 0:
+                normal = body.normal[0]
+                place -= wp.dot(normal, place - wp.vec3d(body.rest[i])) * normal
+            position = wp.vec3(place)
+        if not (is_finite(position) and is_finite(velocity)):
+            wp.atomic_max(record.reason, 0, BAD_RESULT)
+    stage.position_out[i] = position
+    stage.velocity_out[i] = velocity
+
+
+@wp.kernel(enable_backward=False)
+def accept_step(
+    positions: wp.array[wp.vec3],
+    velocities: wp.array[wp.vec3],
+    stage: StageArrays,
+    record: StepRecord,
+    positions_out: wp.array[wp.vec3],
+    velocities_out: wp.array[wp.vec3],
+):
+    """Hand the new state on; where something is not finite, the body stays where it was."""
+    i = wp.tid()
+    if record.reason[0] == 0:
+        positions_out[i] = stage.position_out[i]
+        velocities_out[i] = stage.velocity_out[i]
+    else:
+        positions_out[i] = positions[i]
+        velocities_out[i] = velocities[i]
