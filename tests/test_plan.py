@@ -44,6 +44,7 @@ def ground(builder: newton.ModelBuilder | None = None) -> newton.ModelBuilder:
 
 FEATURES = ("weights", "gradients", "walk cache", "walls and grid", "fitted weights", "nested walks", "quadrature")
 FEATURES += ("elasticity", "third dimension", "surface", "caps", "contact", "room for cuts", "vertices", "edit numbers")
+FEATURES += ("step statistics",)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -121,6 +122,15 @@ def launched_by(launched: dict[str, set[str]], *, cage: bool = False, **options:
     return {name: set(modules) for name, modules in launched.items()}
 
 
+def steps_by(launched: dict[str, set[str]], *, dimension: int) -> set[str]:
+    """Kernels of two steps of the paper's integrator."""
+    model, _, *states = make_solver(builder=ground(), walks=16, dimension=dimension)
+    solver = SolverCageCut(model, integrator="paper")
+    launched.clear()
+    run(solver, states, 2)
+    return set(launched)
+
+
 def test_contact_left_out_is_never_run(launched):
     """Without a contact radius no kernel of contact is compiled or launched; with one they are."""
     without, with_it = launched_by(launched), launched_by(launched, contact_radius=0.01)
@@ -146,8 +156,9 @@ def test_a_plane_body_runs_nothing_in_space(launched):
     for name in ("walk_on_spheres", "land", "resolve", "strain"):
         assert plane[name]
         assert not plane[name] & solid[name], name
-    confining = {name for name in plane if name.startswith("confine_")}
+    confining = {name for name in steps_by(launched, dimension=2) if name.startswith("confine_")}
     assert len(confining) == 3
+    assert not confining & set(steps_by(launched, dimension=3))
     assert not confining & set(solid)
 
 

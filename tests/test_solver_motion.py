@@ -126,7 +126,7 @@ def test_body_comes_to_rest_on_the_ground(dimension: int):
     model.soft_contact_ke = 2.0e5
     pipeline = newton.CollisionPipeline(model)
     contacts = pipeline.contacts()
-    for _ in range(300):
+    for _ in range(400):
         pipeline.collide(states[0], contacts)
         states = run(solver, states, 1, contacts=contacts)
     points, _ = solver.surface(states[0])

@@ -86,7 +86,7 @@ def test_a_trial_sees_energy_and_momentum_that_come_from_nowhere(bench):
     trial = bench.bar(Material(young=1.0e5), segments=1, size=CUBE, gravity=(0.0, 0.0, -9.81))
     fallen = trial.run(10, 1.0 / 60.0).outcome(free=True)
     assert fallen.finite
-    assert fallen.energy_gain == 0.0
+    assert fallen.energy_gain < 1e-6
     assert fallen.momentum_drift < 1e-5
     trial.reset()
     trial.place(velocities=np.tile((1.0, 0.0, 0.0), (8, 1)))

@@ -18,6 +18,7 @@ from .held_arrays import HeldArray, held_arrays
 if TYPE_CHECKING:
     from .body.edit_stamps import EditStamps
     from .body.simulated_body import SimulatedBody
+    from .body.step_watch import StepWatch
 
 _USD = f"{__package__.split('.')[0]}.usd"
 
@@ -72,16 +73,20 @@ def plan_of(body: SimulatedBody) -> list[PlanEntry]:
     return [PlanEntry(body.label, feature, on, reason, sizes[feature]) for feature, on, reason in rows]
 
 
-def plan_of_scene(stamps: EditStamps) -> list[PlanEntry]:
+def plan_of_scene(stamps: EditStamps, watch: StepWatch) -> list[PlanEntry]:
     """What all bodies of a scene have in common.
 
     Args:
         stamps: The numbers of the bodies' edits.
+        watch: The statistics of their steps.
     """
     usd = _USD in sys.modules
     size = sum(held.byte_count for held in held_arrays(stamps))
+    counts = sum(held.byte_count for held in held_arrays(watch, without=tuple(watch.systems)))
+    reason = "elastic steps are counted" if watch.systems else "no body is elastic"
     return [
         PlanEntry("", "edit numbers", True, "states that missed an edit are told apart", size),
+        PlanEntry("", "step statistics", bool(watch.systems), reason, counts),
         PlanEntry("", "USD", usd, "its room was imported" if usd else "nothing has imported its room", 0),
     ]
 

@@ -291,4 +291,4 @@ class SolverCageCut(newton.solvers.SolverBase):
 
     def plan(self) -> list[PlanEntry]:
         """What the scene uses, what was left out and why, and the bytes of each."""
-        return [entry for body in self._simulated for entry in plan_of(body)] + plan_of_scene(self._stamps)
+        return [entry for body in self._simulated for entry in plan_of(body)] + plan_of_scene(self._stamps, self._watch)

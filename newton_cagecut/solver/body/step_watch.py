@@ -27,11 +27,16 @@ class StepWatch:
         self.device = device
         self._bodies = [(label, system) for label, system in zip(labels, systems, strict=True) if system is not None]
         self._labels = tuple(labels)
-        shape = (max(len(self._bodies), 1), len(STEP_COUNTS))
+        shape = (len(self._bodies), len(STEP_COUNTS))
         self._seen = wp.zeros(shape, dtype=int, device="cpu", pinned=device.is_cuda)
         self._seen_counts = self._seen.numpy()  # a view, of host memory on every device
         self._rows = [self._seen[row] for row in range(len(self._bodies))]
         self._warned: set[tuple[str, str]] = set()
+
+    @property
+    def systems(self) -> list[ReducedSystem]:
+        """The systems whose steps are counted."""
+        return [system for _, system in self._bodies]
 
     def note(self) -> None:
         """Hand the counts on to the host, when the device gets there; launches copies only."""
