@@ -25,7 +25,7 @@ from .edit_stamps import EditStamps, hold_rows, state_edits
 from .embedding import SeamPoints, embed, make_surface_rows
 from .rest_frame import RestFrame
 
-_NUDGE = 1.0e-6
+_NUDGE = 3.0e-7
 """How far points on cuts are moved off the other cuts, in diameters of the cage."""
 
 
@@ -293,7 +293,7 @@ class SimulatedBody:
         return self.system.energy(state.particle_q[self.vertices], state.particle_qd[self.vertices])
 
     def nudged_sites(self, surface: Surface, indices: np.ndarray) -> np.ndarray:
-        """Sites of a surface, moved by next to nothing off other cuts that they may lie on, into their own piece.
+        """Sites of a surface, those on several cuts moved by next to nothing into their own piece.
 
         Args:
             surface: The surface.
@@ -302,9 +302,10 @@ class SimulatedBody:
         Returns:
             Rest positions [m], shape (n, dimension).
         """
-        return surface.site_points[indices] + _NUDGE * self.definition.cage.diameter * surface.directions_inward(
-            indices
-        )
+        places, step = surface.site_points[indices], _NUDGE * self.definition.cage.diameter
+        moved = np.flatnonzero(surface.on_several_cuts(indices))
+        places[moved] += step * surface.directions_inward(np.asarray(indices)[moved])
+        return places
 
     def _embed(self, vertices: wp.array, points: wp.array, enabled: wp.array | None) -> None:
         inputs = [self._always if enabled is None else enabled, vertices, self.surface_rows, points]
