@@ -8,7 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 
 from ..elastic import INTEGRATORS
-from ..geometry import as_index, as_number
+from ..geometry import as_choice, as_index, as_number
+
+_MOST_ITERATIONS = 1 << 30
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,9 +37,7 @@ class Config:
     """Factor by which a step's linear solve shrinks the preconditioned residual, in (0, 1)."""
 
     def __post_init__(self) -> None:
-        if self.integrator not in INTEGRATORS:
-            names = ", ".join(map(repr, INTEGRATORS))
-            raise ValueError(f"SolverCageCut integrator must be one of {names}, got {self.integrator!r}")
+        as_choice(self.integrator, tuple(INTEGRATORS), "SolverCageCut integrator")
         iterations = as_index(self.newton_iterations, "SolverCageCut newton_iterations")
         object.__setattr__(self, "newton_iterations", iterations)
         if iterations < 1:
@@ -48,6 +48,9 @@ class Config:
         object.__setattr__(self, "tolerance", as_number(self.tolerance, "SolverCageCut tolerance"))
         if self.max_iterations < 1:
             raise ValueError(f"SolverCageCut max_iterations must be at least 1, got {self.max_iterations}")
+        if max(iterations, self.max_iterations) > _MOST_ITERATIONS:
+            name = "max_iterations" if self.max_iterations > _MOST_ITERATIONS else "newton_iterations"
+            raise ValueError(f"SolverCageCut {name} must be at most {_MOST_ITERATIONS}, got {getattr(self, name)}")
         if not 0.0 < self.tolerance < 1.0:
             raise ValueError(f"SolverCageCut tolerance must lie in (0, 1), got {self.tolerance}: larger is faster")
 

@@ -16,8 +16,11 @@ import numpy as np
 from ..cage import Wall
 from ..geometry import (
     PolygonMesh,
+    as_finite,
+    as_indices,
     as_integers,
     as_points,
+    as_sequence,
     check_finite,
     lifted,
     triangle_normals,
@@ -136,7 +139,13 @@ class Surface:
         Args:
             walls: The cage's walls.
             scale: Texture coordinates a metre on caps [1/m].
+
+        Raises:
+            TypeError: If the walls are none, or the scale is not a number.
+            ValueError: If the scale is not positive, or a cap's wall is missing.
         """
+        scale = as_finite(scale, "scale, texture coordinates a metre,")
+        walls = self._walls(walls)
         uvs = np.zeros((self.point_count, 2)) if self.uvs is None else self.uvs
         corners = uvs[self.triangles]
         for number in np.unique(self.triangle_cap[self.triangle_cap >= 0]).tolist():
@@ -151,7 +160,12 @@ class Surface:
 
         Args:
             walls: The cage's walls.
+
+        Raises:
+            TypeError: If the walls are none.
+            ValueError: If a cap's wall is missing.
         """
+        walls = self._walls(walls)
         if self.normals is None:
             corners = np.repeat(units(self.mesh.face_area_vector)[:, None], 3, axis=1)
         else:
@@ -160,6 +174,13 @@ class Surface:
             cap = self.triangle_cap == number
             corners[cap] = (1 - 2 * self.cap_side[cap].astype(float))[:, None, None] * walls[number].normal
         return corners
+
+    def _walls(self, walls: Sequence[Wall]) -> tuple[Wall, ...]:
+        """The walls, those of all caps among them."""
+        walls, last = as_sequence(walls, Wall, "walls"), int(self.triangle_cap.max(initial=-1))
+        if last >= len(walls):
+            raise ValueError(f"walls: a cap is on wall {last}, and there are {len(walls)}; pass cage.walls of this cut")
+        return walls
 
     def refuse_branches(self) -> None:
         """Raise if an edge has more than two triangles, or two that run along it in the same direction.
@@ -196,7 +217,12 @@ class Surface:
 
         Args:
             points: Point ids, shape (n,).
+
+        Raises:
+            TypeError: If they are not integers.
+            ValueError: If one is of no point.
         """
+        points = as_indices(points, "points", of="point", limit=self.point_count)
         if self.dimension == 2:
             return self._directions_from_border(points)
         row = np.full(self.point_count, -1)

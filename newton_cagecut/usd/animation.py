@@ -4,14 +4,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from os import PathLike
 
 import numpy as np
 from pxr import UsdGeom
 
-from ..geometry import as_points
+from ..geometry import as_finite, as_flag, as_points, as_sequence
 from .body_frame import BodyFrame
 from .body_prims import BodyPrims
 from .layers import (
@@ -57,8 +56,10 @@ class AnimationWriter:
         meters_per_unit: float = 1.0,
         normals: bool = True,
     ):
-        if not (math.isfinite(fps) and fps > 0.0):
+        fps = as_finite(fps, "fps")
+        if fps <= 0.0:
             raise ValueError(f"fps must be positive, got {fps}")
+        normals = as_flag(normals, "normals")
         self.path = checked_path(path)
         self.stage = new_stage(up_axis, meters_per_unit)
         self.stage.SetTimeCodesPerSecond(fps)
@@ -144,12 +145,13 @@ class AnimationWriter:
         """
         if self._closed:
             raise RuntimeError(f"{self.path} is closed: write before close() or inside the with block")
-        if not math.isfinite(frame) or (self.frame is not None and frame <= self.frame):
+        frame = as_finite(frame, "frame, the number of a frame,")
+        if self.frame is not None and frame <= self.frame:
             raise ValueError(f"frame must be larger than the last one ({self.frame}), got {frame}")
+        bodies = tuple(body.checked() for body in as_sequence(bodies, BodyFrame, "bodies"))
         names = [body.name for body in bodies]
         if len(set(names)) < len(names):
             raise ValueError(f"each body comes once a frame, got {', '.join(names)}")
-        bodies = tuple(body.checked() for body in bodies)
         new_paths = {body.name: self._new_path(body.name) for body in bodies if body.name not in self._bodies}
         for body in bodies:
             if body.name in new_paths:

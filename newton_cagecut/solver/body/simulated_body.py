@@ -61,7 +61,9 @@ class SimulatedBody:
         self.vertices = slice(vertex_start, vertex_start + self.capacity.vertices)
         self.surface_particles = slice(surface_start, surface_start + self.capacity.surface_points)
         self.has_contact = surface_start >= 0
-        self._frame = RestFrame.of_particles(definition.cage.vertices, model.particle_q.numpy()[vertex_start:])
+        self._frame = RestFrame.of_particles(
+            definition.cage.vertices, model.particle_q.numpy()[vertex_start:], what=self.label
+        )
         self.quadrature = self._sample()
         self.quadrature_count = len(self.quadrature.points) if self.quadrature else 0
         self.coordinates = self._bake(progress)
@@ -150,7 +152,7 @@ class SimulatedBody:
         """Whether the state of the last step was of the body's present edit, shape (1,), int32."""
         return self._stamps.is_current[self.row : self.row + 1]
 
-    def require_current(self, state: newton.State, what: str = "the state") -> None:
+    def require_current(self, state: newton.State, what: str = "state") -> None:
         """Refuse a state that missed an edit of the body; reads it on the host.
 
         Args:
