@@ -10,6 +10,7 @@ import numpy as np
 import newton_cagecut as cagecut
 from bad_values import FINITE, NOT_NEGATIVE, POSITIVE
 from call_world import Call, box_file, frame_writer, kept_file
+from newton_cagecut.elastic.constitutive import CONSTITUTIVE_MODELS
 from newton_cagecut.usd import AnimationWriter
 
 TABLE = ("a table of 3", "an empty table")
@@ -194,6 +195,20 @@ CALLS: dict[str, Call] = {
             "damping": (*NOT_NEGATIVE, "1e30"),
         },
     ),
+    "ConstitutiveModel": Call(
+        lambda w: cagecut.ConstitutiveModel,
+        lambda w: {
+            "name": "mine",
+            **{name: getattr(CONSTITUTIVE_MODELS["stvk"], name) for name in ("energy", "stress", "stretch_block")},
+            "symmetric_modes": None,
+            "antisymmetric_modes": None,
+        },
+        {
+            "name": ("a word", "a number as text"),
+            "symmetric_modes": OPTION,
+            "antisymmetric_modes": OPTION,
+        },
+    ),
     "Capacity": Call(
         lambda w: cagecut.Capacity,
         lambda w: {"vertices": 8, "surface_points": 200, "surface_triangles": 400},
@@ -311,6 +326,12 @@ CALLS: dict[str, Call] = {
     "SolverCageCut.body": Call(lambda w: w.solver.body, lambda w: {"body": 0}, {"body": ("0",)}),
     "SolverCageCut.log": Call(
         lambda w: w.solver.log, lambda w: {"viewer": newton.viewer.ViewerNull(), "state": w.scene[2]}
+    ),
+    "BodyCut.advance": Call(
+        lambda w: w.body_cut.advance,
+        lambda w: {"to": 0.2, "states": w.scene[2:]},
+        {"to": ("1", "0.5", "1e9", "inf", "1e30", "a number"), "states": ("no list",)},
+        {"to": ("depth",)},
     ),
     "BodyCut.turn": Call(
         lambda w: w.body_cut.turn,

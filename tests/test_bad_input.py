@@ -4,11 +4,18 @@
 
 from __future__ import annotations
 
+import inspect
+
 import pytest
 
+import newton_cagecut as cagecut
 from bad_values import VALUES, complaint
 from call_world import World
 from public_calls import CALLS
+
+MADE_BY_THE_LIBRARY = ("BodyPiece", "BodySnapshot", "CageEdit", "CutReport", "PlanEntry", "UpdateStats")
+HANDED_OUT = ("BodyCut", "CageBody")
+"""Classes of which users only call methods."""
 
 
 @pytest.mark.parametrize("name", CALLS)
@@ -38,3 +45,21 @@ def test_every_wrong_argument_is_named(name: str, tmp_path, monkeypatch):
     assert not faults, f"{name}, {len(faults)} faults:\n" + "\n".join(faults)
     assert world.digest() == before
     function(**right)
+
+
+def test_every_public_call_is_tried():
+    """Every public class that is made, and each of its public methods with arguments, is in the list of calls."""
+    missing = []
+    for name in cagecut.__all__:
+        found = getattr(cagecut, name)
+        if not callable(found) or name in MADE_BY_THE_LIBRARY:
+            continue
+        missing += [name] if name not in CALLS and name not in HANDED_OUT else []
+        for method, function in vars(found).items() if isinstance(found, type) else ():
+            function = getattr(function, "__func__", function)
+            if method.startswith("_") or not inspect.isfunction(function):
+                continue
+            arguments = [key for key in inspect.signature(function).parameters if key not in ("self", "cls", "journal")]
+            if arguments and f"{name}.{method}" not in CALLS:
+                missing.append(f"{name}.{method}")
+    assert missing == []

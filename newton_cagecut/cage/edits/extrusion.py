@@ -106,8 +106,8 @@ def _checked(cage: Cage, face: int, distance: float) -> tuple[int, float]:
     farthest = cage.length_tolerance / np.finfo(float).eps  # beyond it rounding is coarser than the tolerance
     if not cage.length_tolerance < distance <= farthest:
         raise ValueError(
-            f"a face moves outward by a finite distance beyond the cage's tolerance of {cage.length_tolerance:.3g} m, at most "
-            f"{farthest:.3g} m, got {distance:g} m; put an obstacle in or cut to take from the body"
+            f"a face moves outward by a finite distance beyond the cage's tolerance of {cage.length_tolerance:.3g} m, "
+            f"at most {farthest:.3g} m, got {distance:g} m; put an obstacle in or cut to take from the body"
         )
     _check_uncut(cage, face)
     return face, distance
