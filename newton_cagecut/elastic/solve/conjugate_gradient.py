@@ -107,7 +107,9 @@ def make_product(width: int) -> wp.Function:
                 result = add_inertia(result, i, search.direction, body) + scatter(i, lanes)
                 result += wp.vec3(search.pulled[0, i], search.pulled[1, i], search.pulled[2, i])
                 if body.stabilizing_stiffness[i, i] > 0.0:
-                    result += float(body.material[0][0] * step.scales[ELASTIC_STIFFNESS]) * tie(i, search.direction, body)
+                    result += float(body.material[0][0] * step.scales[ELASTIC_STIFFNESS]) * tie(
+                        i, search.direction, body
+                    )
             search.product[i] = result
 
     return multiply
@@ -160,10 +162,12 @@ def make_conditioning(width: int, dense: bool, plane: bool) -> wp.Function:
         count = system.row_count[0]
         if wp.static(dense):
             for r in range(thread, (3 * count + 7) / 8 * 8, wp.block_dim()):
-                value = float(0.0)
+                value = wp.vec3()
                 if r < 3 * count:
-                    value = system.residual[r / 3][r % 3]
-                search.rows[r] = value
+                    value = wp.vec3(system.residual[r / 3])
+                    if wp.static(plane):
+                        value = in_plane(value, system.normal[0])
+                search.rows[r] = value[r % 3]
             wait()
             factor_solve(thread, 3 * count, matrix, matrix_lanes, search.rows, row_lanes, search.solved)
             for i in range(thread, count, wp.block_dim()):

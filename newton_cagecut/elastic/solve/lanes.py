@@ -17,6 +17,7 @@ from ..arrays import BodyArrays, StepArrays
 
 wp.set_module_options({"enable_backward": False})
 
+
 def lane_width(device: wp.Device) -> int:
     """Lanes of a vector on a device."""
     return arrays.CPU_WIDTH if device.is_cpu else 1
@@ -160,9 +161,7 @@ def make_gather_kernel(width: int) -> wp.Kernel:
     gather_block = make_gather(width)
 
     @wp.kernel(enable_backward=False, module="unique")
-    def gather_changes(
-        values: wp.array(dtype=wp.vec3), body: BodyArrays, lanes: Lanes, result: wp.array2d(dtype=lane)
-    ):
+    def gather_changes(values: wp.array(dtype=wp.vec3), body: BodyArrays, lanes: Lanes, result: wp.array2d(dtype=lane)):
         gather_block(wp.tid(), values, body, lanes, result)
 
     return gather_changes

@@ -126,10 +126,19 @@ class LinearSolver:
         capacity, plane = body.rest.shape[0], body.normal is not None
         matrix_lanes = lanes.in_lanes(self.matrix.values, width)
         row_lanes = lanes.in_lanes(self.search.rows, width)
-        inputs = [wp.float64(self.limits.tolerance), self.limits.max_iterations, body, step, system, points, self.search, self.matrix, self.lanes, self._changes]
-        solve = block_later(
-            make_solve_kernel(width, self.is_dense, plane), [*inputs, matrix_lanes, row_lanes], device
-        )
+        inputs = [
+            wp.float64(self.limits.tolerance),
+            self.limits.max_iterations,
+            body,
+            step,
+            system,
+            points,
+            self.search,
+            self.matrix,
+            self.lanes,
+            self._changes,
+        ]
+        solve = block_later(make_solve_kernel(width, self.is_dense, plane), [*inputs, matrix_lanes, row_lanes], device)
         if not self.is_dense:
             blocks = launch_later(make_block_kernel(width), capacity, [body, step, system, points, self.lanes], device)
             self._solve_launches = (blocks, solve)
@@ -137,7 +146,9 @@ class LinearSolver:
         tiles = (-(-capacity // ROWS), -(-capacity // COLUMNS), 3)
         self._solve_launches = (
             launch_later(make_assembly_kernel(width), tiles, [body, step, self.lanes, self.matrix], device),
-            launch_later(make_point_kernel(width), (capacity, -(-capacity // width)), [body, points, self.matrix], device),
+            launch_later(
+                make_point_kernel(width), (capacity, -(-capacity // width)), [body, points, self.matrix], device
+            ),
             block_later(make_factor_kernel(width), [body.vertex_count, self.matrix, matrix_lanes], device),
             solve,
         )

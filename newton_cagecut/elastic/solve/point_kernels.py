@@ -26,9 +26,7 @@ def spread(thread: int, count: int, values: wp.array[wp.vec3], components: wp.ar
 
 
 @wp.func
-def add_pulled(
-    thread: int, count: int, system: LinearSystem, pulled: wp.array2d[float], target: wp.array[wp.vec3]
-):
+def add_pulled(thread: int, count: int, system: LinearSystem, pulled: wp.array2d[float], target: wp.array[wp.vec3]):
     """Add what points pull to the vertices that are not fixed."""
     for i in range(thread, count, wp.block_dim()):
         if system.fixed[i] == 0:

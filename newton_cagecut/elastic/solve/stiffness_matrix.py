@@ -46,9 +46,7 @@ def make_dense_matrix(row_count: int, device: wp.Device) -> DenseMatrix:
 
 
 @wp.func
-def put_entry(
-    i: int, j: int, a: int, b: int, elastic: float, body: BodyArrays, step: StepArrays, matrix: DenseMatrix
-):
+def put_entry(i: int, j: int, a: int, b: int, elastic: float, body: BodyArrays, step: StepArrays, matrix: DenseMatrix):
     """Write an entry and its mirror image, given the quadrature's part."""
     if j <= i and i < body.vertex_count[0] and (i != j or a <= b):
         value = elastic
@@ -166,9 +164,7 @@ def make_point_kernel(width: int) -> wp.Kernel:
 
 
 @wp.func
-def add_block(
-    i: int, j: int, xx: float, yy: float, zz: float, xy: float, yz: float, zx: float, matrix: DenseMatrix
-):
+def add_block(i: int, j: int, xx: float, yy: float, zz: float, xy: float, yz: float, zx: float, matrix: DenseMatrix):
     """Add a symmetric 3x3 block and its mirror image."""
     block = wp.mat33(xx, xy, zx, xy, yy, yz, zx, yz, zz)
     for a in range(3):
