@@ -11,11 +11,11 @@ import warp as wp
 
 from .arrays import BodyArrays, make_linear_system, make_step_arrays
 from .launching import launch_later
+from .solve.elastic_residual import make_residual_kernel
 from .solve.linear_solver import LinearSolver, SolveLimits
 from .solve.point_forces import PointForces
 from .stages import step_record
 from .step_kernels import make_strain_kernel
-from .solve.elastic_residual import make_residual_kernel
 
 
 class Motion(NamedTuple):

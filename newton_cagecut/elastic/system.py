@@ -156,7 +156,7 @@ class ReducedSystem:
             array.assign(padded)
 
     def refresh(self) -> None:
-        """Bring what follows from weights and gradients up to date after an edit of weights, volumes or the vertex count."""
+        """Bring masses, anchors and lanes up to date after an edit of weights, gradients, volumes or the count."""
         for launch in self._refresh_launches:
             launch.launch()
         self._integrator.solver.refresh()

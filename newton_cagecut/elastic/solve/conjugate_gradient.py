@@ -22,7 +22,7 @@ from ..arrays import ELASTIC_STIFFNESS, BodyArrays, LinearSystem, StepArrays
 from ..plane_confinement import in_plane, inverse_in_plane
 from ..step_kernels import add_inertia, tie
 from .cholesky import make_factor_solve, wait
-from .lanes import entry, lane_struct, lane_type, make_gather, make_lane_sum, make_scatter
+from .lanes import entry, lane_struct, lane_type, make_gather, make_scatter
 from .point_forces import PointForces, make_point_value
 from .stiffness_matrix import DenseMatrix
 

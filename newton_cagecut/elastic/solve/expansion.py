@@ -8,6 +8,7 @@ import functools
 import warp as wp
 
 from ..arrays import ELASTIC_STIFFNESS, BodyArrays, LinearSystem, StepArrays
+from ..stiffness import Stiffness
 from .lanes import entry, lane_struct, lane_type, make_lane_sum
 from .point_forces import PointForces
 
@@ -16,11 +17,9 @@ wp.set_module_options({"enable_backward": False})
 Matrix9 = wp.types.matrix(shape=(9, 9), dtype=wp.float32)
 
 
-@wp.kernel(enable_backward=False)
-def expand_stiffness(step: StepArrays):
-    """Write a point's stiffness out: E T E^T, where column 3 i + j of E is left_i (x) right_j."""
-    q = wp.tid()
-    stiffness = step.stiffnesses[q]
+@wp.func
+def expanded(stiffness: Stiffness) -> Matrix9:
+    """A point's stiffness as a matrix: E T E^T, where column 3 i + j of E is left_i (x) right_j."""
     E, T = Matrix9(), Matrix9()
     for i in range(3):
         for j in range(3):
@@ -32,7 +31,14 @@ def expand_stiffness(step: StepArrays):
                 k = 3 - i - j
                 T[3 * i + j, 3 * i + j] = stiffness.straight[k]
                 T[3 * i + j, 3 * j + i] = stiffness.crossed[k]
-    K = E * T * wp.transpose(E)
+    return E * T * wp.transpose(E)
+
+
+@wp.kernel(enable_backward=False)
+def expand_stiffness(step: StepArrays):
+    """Write the points' stiffness out."""
+    q = wp.tid()
+    K = expanded(step.stiffnesses[q])
     for m in range(9):
         for n in range(m, 9):
             step.moduli[entry(m, n), q] = K[m, n]

@@ -19,7 +19,6 @@ from .point_forces import PointForces, no_point_forces
 from .point_kernels import make_point_product_kernel, make_point_residual_kernel
 from .stiffness_matrix import COLUMNS, ROWS, make_assembly_kernel, make_dense_matrix, make_point_kernel
 
-
 DENSE_VERTICES = 600
 """Vertices, spare ones included, up to which a factor pays; measured by ``benchmarks.solve``."""
 
