@@ -15,6 +15,7 @@ import warp as wp
 
 from ..geometry import as_number
 from ..section import Blade
+from ..usd import SceneFrame
 from .body.body_pieces import BodyPiece
 from .body.cage_body import CageBody
 from .body.edit_stamps import EditStamps, state_edits
@@ -27,6 +28,7 @@ from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
 from .plan import PlanEntry, plan_of, plan_of_scene
 from .progress_bars import fraction_bar
+from .scene_recorder import SceneRecorder
 from .viewing import SurfaceViewer
 from .warm_up import warm_up
 
@@ -84,6 +86,7 @@ class SolverCageCut(newton.solvers.SolverBase):
             ]
         self._bodies = tuple(CageBody(body) for body in self._simulated)
         self._viewer = SurfaceViewer()
+        self._recorder = SceneRecorder(model, self._simulated)
         labels, systems = zip(*((body.label, body.system) for body in self._simulated), strict=True)
         self._watch = StepWatch(labels, systems, model.device)
 
@@ -278,6 +281,17 @@ class SolverCageCut(newton.solvers.SolverBase):
         """Show the surfaces in any Newton viewer, with the topology of this frame; caps have a colour of their own."""
         for body in self._simulated:
             self._viewer.log(viewer, body, state)
+
+    def scene_frame(self, state: newton.State) -> SceneFrame:
+        """What the scene looks like in a state: for ``AnimationWriter.write_frame(frame, solver, state)``.
+
+        Args:
+            state: The state.
+
+        Raises:
+            ValueError: The state missed an edit of a body.
+        """
+        return self._recorder.frame(state)
 
     def statistics(self) -> list[dict[str, object]]:
         """How the steps of each body went, one record a body, read on the host.

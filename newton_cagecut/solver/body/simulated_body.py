@@ -190,6 +190,13 @@ class SimulatedBody:
         self._embed(state.particle_q[self.vertices], points, None)
         return points[: len(self.surface.points)]
 
+    def surface_velocities(self, state: newton.State) -> wp.array:
+        """Velocities of the surface's points [m/s], shape (point_count,)."""
+        self.require_current(state)
+        velocities = wp.empty(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
+        self._embed(state.particle_qd[self.vertices], velocities, None)
+        return velocities[: len(self.surface.points)]
+
     def surface_triangles(self) -> wp.array:
         """Triangles of the surface, shape (triangle_count,) vec3i."""
         return self._triangles[: len(self.surface.triangles)]
