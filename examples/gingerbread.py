@@ -67,7 +67,7 @@ class Example(CutScene):
             walks=self.walks,
             label="gingerbread",
         )
-        for name, place in PINS.items():
+        for place in PINS.values():
             builder.add_shape_cylinder(
                 -1,
                 xform=wp.transform(place, UPRIGHT),
@@ -76,7 +76,7 @@ class Example(CutScene):
                 cfg=newton.ModelBuilder.ShapeConfig(has_particle_collision=False),
             )
             pin = newton.Mesh.create_cylinder(PIN_RADIUS, PIN_HALF, up_axis=newton.Axis.Y)
-            self.static_meshes += (StaticMesh.of(name, pin, place),)
+            self.static_meshes += (StaticMesh.of(pin, place),)
 
     def cuts(self) -> tuple[PlannedCut, ...]:
         return CUTS

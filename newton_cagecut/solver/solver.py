@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
+from typing import TYPE_CHECKING
 
 import newton
 import numpy as np
@@ -15,7 +16,6 @@ import warp as wp
 
 from ..geometry import as_number
 from ..section import Blade
-from ..usd import SceneFrame
 from .body.body_pieces import BodyPiece
 from .body.cage_body import CageBody
 from .body.edit_stamps import EditStamps, state_edits
@@ -28,9 +28,12 @@ from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
 from .plan import PlanEntry, plan_of, plan_of_scene
 from .progress_bars import fraction_bar
-from .scene_recorder import SceneRecorder
 from .viewing import SurfaceViewer
 from .warm_up import warm_up
+
+if TYPE_CHECKING:  # a scene without animations does not import USD
+    from ..usd import SceneFrame
+    from .scene_recorder import SceneRecorder
 
 
 class SolverCageCut(newton.solvers.SolverBase):
@@ -86,7 +89,7 @@ class SolverCageCut(newton.solvers.SolverBase):
             ]
         self._bodies = tuple(CageBody(body) for body in self._simulated)
         self._viewer = SurfaceViewer()
-        self._recorder = SceneRecorder(model, self._simulated)
+        self._recorder: SceneRecorder | None = None
         labels, systems = zip(*((body.label, body.system) for body in self._simulated), strict=True)
         self._watch = StepWatch(labels, systems, model.device)
 
@@ -291,6 +294,10 @@ class SolverCageCut(newton.solvers.SolverBase):
         Raises:
             ValueError: The state missed an edit of a body.
         """
+        if self._recorder is None:
+            from .scene_recorder import SceneRecorder
+
+            self._recorder = SceneRecorder(self.model, self._simulated)
         return self._recorder.frame(state)
 
     def statistics(self) -> list[dict[str, object]]:
