@@ -182,8 +182,8 @@ CALLS: dict[str, Call] = {
     ),
     "Surface.directions_inward": Call(
         lambda w: w.surface.directions_inward,
-        lambda w: {"points": [0, 1]},
-        {"points": ("no list", "one index", "the same twice")},
+        lambda w: {"sites": [0, 1]},
+        {"sites": ("no list", "one index", "the same twice")},
     ),
     "Material": Call(
         lambda w: cagecut.Material,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 
-from ..elastic import INTEGRATORS
+from ..elastic import INTEGRATORS, SolveLimits
 from ..geometry import as_choice, as_index, as_number
 
 _MOST_ITERATIONS = 1 << 30
@@ -36,6 +36,10 @@ class Config:
     tolerance: float = 1.0e-5
     """Factor by which a step's linear solve shrinks the preconditioned residual, in (0, 1)."""
 
+    dense_vertices: int = SolveLimits().dense_vertices
+    """Most cage vertices, spare ones included, of a body whose solves have a dense factor of its matrix; a larger one
+    has the inverses of the matrix's diagonal blocks."""
+
     def __post_init__(self) -> None:
         as_choice(self.integrator, tuple(INTEGRATORS), "SolverCageCut integrator")
         iterations = as_index(self.newton_iterations, "SolverCageCut newton_iterations")
@@ -51,8 +55,16 @@ class Config:
         if max(iterations, self.max_iterations) > _MOST_ITERATIONS:
             name = "max_iterations" if self.max_iterations > _MOST_ITERATIONS else "newton_iterations"
             raise ValueError(f"SolverCageCut {name} must be at most {_MOST_ITERATIONS}, got {getattr(self, name)}")
+        object.__setattr__(self, "dense_vertices", as_index(self.dense_vertices, "SolverCageCut dense_vertices"))
+        if self.dense_vertices < 0:
+            raise ValueError(f"SolverCageCut dense_vertices must not be negative, got {self.dense_vertices}")
         if not 0.0 < self.tolerance < 1.0:
             raise ValueError(f"SolverCageCut tolerance must lie in (0, 1), got {self.tolerance}: larger is faster")
+
+    @property
+    def limits(self) -> SolveLimits:
+        """How exactly linear systems are solved."""
+        return SolveLimits(self.max_iterations, self.tolerance, self.dense_vertices)
 
     @classmethod
     def of(cls, config: Config | None, options: dict[str, object]) -> Config:

@@ -40,7 +40,7 @@ class Capacity:
 
     Args:
         vertices: Vertices of the cage.
-        surface_points: Points of the embedded surface.
+        surface_points: Points of the embedded surface, those along seams counting as one.
         surface_triangles: Triangles of the embedded surface, caps included.
 
     Raises:
@@ -80,7 +80,7 @@ class Capacity:
         spare = _SPARE if cuts else 0
         return cls(
             vertices=cage.vertex_count + int(vertices * (1.0 + _CROSSED_VERTICES * earlier)) + spare,
-            surface_points=surface.point_count + points + spare,
+            surface_points=surface.site_count + points + spare,
             surface_triangles=surface.triangle_count + 2 * points + 2 * spare,
         )
 
@@ -108,7 +108,7 @@ class Capacity:
         cage, surface = _checked(cage, surface)
         needed = {
             "vertices": cage.vertex_count,
-            "surface_points": surface.point_count,
+            "surface_points": surface.site_count,
             "surface_triangles": surface.triangle_count,
         }
         for name, count in needed.items():
