@@ -168,8 +168,19 @@ CALLS: dict[str, Call] = {
             "normals": w.surface.points,
             "triangle_cap": np.full(len(w.surface.triangles), -1),
             "point_key": np.full(len(w.surface.points), -1),
+            "weld": None,
+            "data": {"heat": np.zeros(len(w.surface.points))},
         },
-        {"points": (), "triangles": (), "uvs": OPTION, "normals": OPTION, "triangle_cap": OPTION, "point_key": OPTION},
+        {
+            "points": (),
+            "triangles": (),
+            "uvs": OPTION,
+            "normals": OPTION,
+            "triangle_cap": OPTION,
+            "point_key": OPTION,
+            "weld": (*OPTION, *FINITE, "inf", "-inf", "1e30"),
+            "data": OPTION,
+        },
         {"triangles": ("triangle",)},
     ),
     "Surface.corner_uvs": Call(
@@ -179,6 +190,11 @@ CALLS: dict[str, Call] = {
     ),
     "Surface.corner_normals": Call(
         lambda w: w.surface.corner_normals, lambda w: {"walls": w.cage.walls}, {"walls": ("no list",)}
+    ),
+    "Surface.with_data": Call(
+        lambda w: w.surface.with_data,
+        lambda w: {"data": {"heat": np.zeros(len(w.surface.points))}},
+        {"data": OPTION},
     ),
     "Surface.directions_inward": Call(
         lambda w: w.surface.directions_inward,
@@ -277,8 +293,10 @@ CALLS: dict[str, Call] = {
             "newton_iterations": 1,
             "max_iterations": 20,
             "tolerance": 1e-3,
+            "dense_vertices": 100,
         },
         {
+            "dense_vertices": ("0", "1", "1e9", "1e30"),
             "config": OPTION,
             "progress": (*OPTION, "True", "a class"),
             "newton_iterations": ("1",),
@@ -320,8 +338,11 @@ CALLS: dict[str, Call] = {
     ),
     "SolverCageCut.restore": Call(lambda w: w.solver.restore, lambda w: {"snapshot": w.solver.snapshot(0)}),
     "SolverCageCut.surface": Call(
-        lambda w: w.solver.surface, lambda w: {"state": w.scene[2], "body": 0}, {"body": ("0",)}
+        lambda w: w.solver.surface,
+        lambda w: {"state": w.scene[2], "body": 0, "data": False},
+        {"body": ("0",), "data": ("True",)},
     ),
+    "SolverCageCut.scene_frame": Call(lambda w: w.solver.scene_frame, lambda w: {"state": w.scene[2]}),
     "SolverCageCut.pieces": Call(lambda w: w.solver.pieces, lambda w: {"body": 0}, {"body": ("0",)}),
     "SolverCageCut.body": Call(lambda w: w.solver.body, lambda w: {"body": 0}, {"body": ("0",)}),
     "SolverCageCut.log": Call(

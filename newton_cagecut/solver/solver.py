@@ -294,7 +294,7 @@ class SolverCageCut(newton.solvers.SolverBase):
             Points in the world [m], shape (n, 3), float32, and triangles, shape (m, 3), int32; with ``data`` also
             arrays by name, of shapes (n, ...), (m, 3, ...) and (m, ...).
         """
-        found = self._simulated[self._row(body)]
+        found, data = self._simulated[self._row(body)], as_flag(data, "data")
         points, triangles = found.surface_points(state).numpy().copy(), found.surface.triangles.astype(np.int32)
         if not data:
             return points, triangles
