@@ -15,6 +15,7 @@ import numpy as np
 from ..geometry import as_number, as_vector, dots, is_number, lifted, shown
 
 _LEAST_SINE = 1e-3
+_STARTS = (-np.inf, np.finfo(float).max)
 
 
 class Blade:
@@ -56,9 +57,7 @@ class Blade:
         self.direction = _as_unit(direction, "direction", self.dimension)
         self.normal = _normal(self.edge, self.direction)
         self.heel, self.tip = _as_width(width)
-        self.start = -np.inf if start is None else as_number(start, "the blade's start, a length [m],")
-        if self.start == np.inf:
-            raise ValueError("the blade's start must be a length [m], or None for outside of the body, got inf")
+        self.start = -np.inf if start is None else as_number(start, "the blade's start", limits=_STARTS)
         for vector in (self.origin, self.edge, self.direction, self.normal):
             vector.setflags(write=False)
 

@@ -213,7 +213,7 @@ class AnimationWriter:
                 edit of a body.
         """
         self._require_open()
-        frame = as_finite(frame, "frame, the number of a frame,")
+        as_finite(frame, "frame, the number of a frame,")
         if self.frame is not None and frame <= self.frame:
             raise ValueError(f"frame must be larger than the last one ({self.frame}), got {frame}")
         scene = self._scene_of(bodies)
