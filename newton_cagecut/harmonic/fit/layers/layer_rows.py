@@ -10,7 +10,6 @@ import warp as wp
 
 from .far_segments import (
     FarSegment,
-    SegmentSpan,
     far_segment_layers,
     far_segment_rows,
     far_segment_slopes,
@@ -18,7 +17,6 @@ from .far_segments import (
 )
 from .far_triangles import (
     FarTriangle,
-    TriangleSpan,
     far_triangle_layers,
     far_triangle_rows,
     far_triangle_slopes,
@@ -78,13 +76,13 @@ def make_layer_rows(dimension: int) -> LayerRows:
     """
     plane = dimension == 2
     if plane:
-        Panel, FarPanel, Sums = Segment, FarSegment, SegmentSpan
+        Panel, FarPanel = Segment, FarSegment
         view_far, far_layers, far_slopes = view_far_segment, far_segment_layers, far_segment_slopes
         near_layers, near_slopes = segment_layers, segment_slopes
         panel_rows, far_rows = segment_rows, far_segment_rows
         Vector, Nodes = wp.vec2d, wp.vec2i
     else:
-        Panel, FarPanel, Sums = Triangle, FarTriangle, TriangleSpan
+        Panel, FarPanel = Triangle, FarTriangle
         view_far, far_layers, far_slopes = view_far_triangle, far_triangle_layers, far_triangle_slopes
         near_layers, near_slopes = triangle_layers, triangle_slopes
         panel_rows, far_rows = triangle_rows, far_triangle_rows
@@ -112,60 +110,10 @@ def make_layer_rows(dimension: int) -> LayerRows:
         return point
 
     @wp.func
-    def charge_of(sums: Sums, k: int) -> Span:
-        if k == 0:
-            return sums.charge_0
-        if wp.static(plane):
-            return sums.charge_1
-        else:
-            if k == 1:
-                return sums.charge_1
-            return sums.charge_2
-
-    @wp.func
-    def dipole_with(sums: Sums, density: Vector) -> Span:
-        total = float(density[0]) * sums.dipole_0 + float(density[1]) * sums.dipole_1
-        if wp.static(not plane):
-            total += float(density[2]) * sums.dipole_2
-        return total
-
-    @wp.func
-    def put_charge(sums: Sums, k: int, c: int, value: float) -> Sums:
-        if k == 0:
-            sums.charge_0[c] = value
-        if k == 1:
-            sums.charge_1[c] = value
-        if wp.static(not plane):
-            if k == 2:
-                sums.charge_2[c] = value
-        return sums
-
-    @wp.func
-    def put_dipole(sums: Sums, k: int, c: int, value: float) -> Sums:
-        if k == 0:
-            sums.dipole_0[c] = value
-        if k == 1:
-            sums.dipole_1[c] = value
-        if wp.static(not plane):
-            if k == 2:
-                sums.dipole_2[c] = value
-        return sums
-
-    @wp.func
-    def add(panels: Panels, sheet: SheetRange, j: int, sums: Sums, row: int, out: wp.array2d[Span]):
+    def add(out: wp.array2d[Span], row: int, column: int, value: Span):
         # Read, add, write: "+=" on an array element would be atomic.
-        node = panels.nodes[j]
-        if node[0] >= 0:
-            for k in range(wp.static(dimension)):
-                column = sheet.column + node[k]
-                before = out[row, column]
-                out[row, column] = before + charge_of(sums, k)
-        item = panels.item[j]
-        if item >= 0:
-            for k in range(sheet.dipole_count):
-                column = sheet.column + sheet.charge_count + k
-                before = out[row, column]
-                out[row, column] = before + dipole_with(sums, panels.density[sheet.first_item + item + k])
+        before = out[row, column]
+        out[row, column] = before + value
 
     @wp.func
     def clear(sheet: SheetRange, row: int, out: wp.array2d[Span]):
@@ -188,15 +136,42 @@ def make_layer_rows(dimension: int) -> LayerRows:
         for j in range(sheet.first, sheet.last):
             far = panels.far[j]
             view = view_far(far, places, span)
+            near = bool(wp.min(view.squared) < far.squared)
+            node = panels.nodes[j]
+            item = panels.item[j]
             sums = far_layers(far, view)
-            if wp.min(view.squared) < far.squared:
+            charge_0 = sums.charge_0
+            charge_1 = sums.charge_1
+            dipole_0 = sums.dipole_0
+            dipole_1 = sums.dipole_1
+            charge_2 = Span()
+            dipole_2 = Span()
+            if wp.static(not plane):
+                charge_2 = sums.charge_2
+                dipole_2 = sums.dipole_2
+            if near:
                 for c in range(SPAN):
                     if view.squared[c] < far.squared:
                         own = near_layers(panels.near[j], point_of(places, span, c))
-                        for k in range(wp.static(dimension)):
-                            sums = put_charge(sums, k, c, float(own.charge[k]))
-                            sums = put_dipole(sums, k, c, float(own.dipole[k]))
-            add(panels, sheet, j, sums, span, out)
+                        charge_0[c] = float(own.charge[0])
+                        charge_1[c] = float(own.charge[1])
+                        dipole_0[c] = float(own.dipole[0])
+                        dipole_1[c] = float(own.dipole[1])
+                        if wp.static(not plane):
+                            charge_2[c] = float(own.charge[2])
+                            dipole_2[c] = float(own.dipole[2])
+            if node[0] >= 0:
+                add(out, span, sheet.column + node[0], charge_0)
+                add(out, span, sheet.column + node[1], charge_1)
+                if wp.static(not plane):
+                    add(out, span, sheet.column + node[2], charge_2)
+            if item >= 0:
+                for k in range(sheet.dipole_count):
+                    density = panels.density[sheet.first_item + item + k]
+                    total = float(density[0]) * dipole_0 + float(density[1]) * dipole_1
+                    if wp.static(not plane):
+                        total += float(density[2]) * dipole_2
+                    add(out, span, sheet.column + sheet.charge_count + k, total)
 
     @wp.kernel(enable_backward=False, module="unique", module_options=_OPTIONS)
     def slopes(
@@ -216,16 +191,43 @@ def make_layer_rows(dimension: int) -> LayerRows:
             far = panels.far[j]
             view = view_far(far, places, span)
             near = bool(wp.min(view.squared) < far.squared)
+            node = panels.nodes[j]
+            item = panels.item[j]
             for axis in range(wp.static(dimension)):
+                row = span * wp.static(dimension) + axis
                 sums = far_slopes(far, view, axis)
+                charge_0 = sums.charge_0
+                charge_1 = sums.charge_1
+                dipole_0 = sums.dipole_0
+                dipole_1 = sums.dipole_1
+                charge_2 = Span()
+                dipole_2 = Span()
+                if wp.static(not plane):
+                    charge_2 = sums.charge_2
+                    dipole_2 = sums.dipole_2
                 if near:
                     for c in range(SPAN):
                         if view.squared[c] < far.squared:
                             own = near_slopes(panels.near[j], point_of(places, span, c))
-                            for k in range(wp.static(dimension)):
-                                sums = put_charge(sums, k, c, float(own.charge[k, axis]))
-                                sums = put_dipole(sums, k, c, float(own.dipole[k, axis]))
-                add(panels, sheet, j, sums, span * wp.static(dimension) + axis, out)
+                            charge_0[c] = float(own.charge[0, axis])
+                            charge_1[c] = float(own.charge[1, axis])
+                            dipole_0[c] = float(own.dipole[0, axis])
+                            dipole_1[c] = float(own.dipole[1, axis])
+                            if wp.static(not plane):
+                                charge_2[c] = float(own.charge[2, axis])
+                                dipole_2[c] = float(own.dipole[2, axis])
+                if node[0] >= 0:
+                    add(out, row, sheet.column + node[0], charge_0)
+                    add(out, row, sheet.column + node[1], charge_1)
+                    if wp.static(not plane):
+                        add(out, row, sheet.column + node[2], charge_2)
+                if item >= 0:
+                    for k in range(sheet.dipole_count):
+                        density = panels.density[sheet.first_item + item + k]
+                        total = float(density[0]) * dipole_0 + float(density[1]) * dipole_1
+                        if wp.static(not plane):
+                            total += float(density[2]) * dipole_2
+                        add(out, row, sheet.column + sheet.charge_count + k, total)
 
     types = {"near": Panel, "far": FarPanel, "nodes": Nodes, "item": wp.int32, "density": Vector}
     return LayerRows(Panels, types, panel_rows, far_rows, layers, slopes)
