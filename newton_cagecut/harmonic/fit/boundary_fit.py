@@ -98,9 +98,9 @@ class BoundaryFit:
         return [faces[key] for key in keys]
 
     def _ordered(self, piece: int, panels: FacePanels) -> list[int]:
-        """Faces of a piece; those that cuts have changed come last, by the cuts."""
+        """Faces of a piece; those that a step of a cut is likely to change come last."""
         own = np.flatnonzero(self.cage.face_piece == piece)
-        return own[np.lexsort((own, panels.latest_wall[own]))].tolist()
+        return own[np.lexsort((own, panels.rank[own]))].tolist()
 
     def _fit_of(self, piece: int, earlier: list[DensityFit]) -> DensityFit:
         order = self._order[piece]

@@ -22,7 +22,7 @@ wp.set_module_options({"enable_backward": False, "max_unroll": 0})
 WIDTH = 8
 """Columns of a lane."""
 LANE = wp.types.vector(length=WIDTH, dtype=wp.float64)
-BLOCK_LANES = 4
+BLOCK_LANES = 8
 BLOCK = BLOCK_LANES * WIDTH
 """Rows of a block, and the columns of its lanes."""
 ROWS = 4

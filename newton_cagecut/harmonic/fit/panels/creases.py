@@ -44,7 +44,7 @@ class Creases:
         step: From there to their ends, shape (n, 3).
         least: Greatest length of panels on them, shape (n,).
         growth: Length of panels a distance away, relative to the distance.
-        wall: The latest cut that an end of them lies on, as its wall, -1 without, shape (n,).
+        at_front: Whether an end of them lies on the front of a cut, shape (n,).
         fronts: Half-edges of each face along the front of a cut, as pairs of face and half-edge, shape (m, 2).
     """
 
@@ -52,7 +52,7 @@ class Creases:
     step: np.ndarray
     least: np.ndarray
     growth: float
-    wall: np.ndarray
+    at_front: np.ndarray
     fronts: np.ndarray
 
     def wanted(self, points: np.ndarray, most: float) -> np.ndarray:
@@ -116,7 +116,8 @@ def find_creases(cage: Cage, frame: UnitFrame, most: float, grading: Grading) ->
     bent = (angle > _LEAST_ANGLE) & (half < mesh.twin[half])
     corner, corner_local = _concave_corners(cage, frame, most)
     fronts = np.stack([one[front], half[front]], axis=1)
-    latest = latest_walls(cage)
+    at_front = np.zeros(cage.vertex_count, dtype=bool)
+    at_front[mesh.face_vertex[half[front]]] = True
     ends = mesh.face_vertex[half[bent]], mesh.destination[half[bent]]
     return Creases(
         np.concatenate([vertices[ends[0]], vertices[corner]]),
@@ -125,18 +126,9 @@ def find_creases(cage: Cage, frame: UnitFrame, most: float, grading: Grading) ->
             [local[bent] * grading.shrink ** (2.0 * angle[bent] / np.pi - 2.0), corner_local * grading.shrink]
         ),
         grading.growth,
-        np.concatenate([np.maximum(latest[ends[0]], latest[ends[1]]), latest[corner]]),
+        np.concatenate([at_front[ends[0]] | at_front[ends[1]], at_front[corner]]),
         fronts,
     )
-
-
-def latest_walls(cage: Cage) -> np.ndarray:
-    """The latest cut that each vertex lies on, as its wall, -1 without, shape (vertex_count,)."""
-    two_sided = np.array([wall.two_sided for wall in cage.walls])
-    wall = np.where(two_sided, np.arange(len(two_sided)), -1)[np.asarray(cage.face_wall)]
-    latest = np.full(cage.vertex_count, -1)
-    np.maximum.at(latest, cage.mesh.face_vertex, wall[cage.mesh.face])
-    return latest
 
 
 def _interior_angles(normal: np.ndarray, one: np.ndarray, other: np.ndarray, step: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ from ....cage import Cage
 from ...walls.frame import UnitFrame
 from .bisection import bisect
 from .coverage import uncovered_parts
-from .creases import Creases, Grading, find_creases, latest_walls
+from .creases import Creases, Grading, find_creases
 from .strips import fan_panels, strip_panels
 
 GRADINGS = (Grading(0.35, 1.75), Grading(0.6, 2.5), Grading(1.0, 4.0), Grading(1.0, np.inf))
@@ -76,7 +76,7 @@ class FacePanels:
         charged: Whether a panel carries charges. Where both sides of a cut belong to one piece, one side does.
         valued: Whether a panel is one of those that its face is divided into. The others lie on parts of faces that
             only carry charges.
-        latest_wall: The latest cut that has a say in the panels of each face, as its wall, -1 without,
+        rank: Faces that come later in the order of their ranks are more likely to change in the next step of a cut,
             shape (face_count,).
     """
 
@@ -85,7 +85,7 @@ class FacePanels:
     face: np.ndarray
     charged: np.ndarray
     valued: np.ndarray
-    latest_wall: np.ndarray
+    rank: np.ndarray
 
     @property
     def unknown_count(self) -> int:
@@ -123,7 +123,7 @@ def face_panels(
     fronted = {
         face: creases.fronts[creases.fronts[:, 0] == face, 1] for face in np.unique(creases.fronts[:, 0]).tolist()
     }
-    whole, latest = _whole_faces(cage, planes, vertices, creases, most, set(fronted), known)
+    whole, rank = _whole_faces(cage, planes, vertices, creases, most, set(fronted), known)
     for face, half_edges in fronted.items():
         whole[face] = _strips(cage, planes, face, half_edges, most, known)
     parts = []
@@ -143,7 +143,7 @@ def face_panels(
         face,
         charged,
         valued,
-        latest,
+        rank,
     )
 
 
@@ -156,12 +156,11 @@ def _whole_faces(
     skipped: set[int],
     known: PanelParts,
 ) -> tuple[list[tuple[bytes, np.ndarray, np.ndarray]], np.ndarray]:
-    """Faces bisected towards creases: what they follow from, corners and nodes; and the latest wall of each face."""
+    """Faces bisected towards creases: what they follow from, corners and nodes; and the rank of each face."""
     mesh, count = cage.mesh, cage.face_count
     low, high = (ufunc.reduceat(vertices[mesh.face_vertex], mesh.face_start[:-1]) for ufunc in (np.minimum, np.maximum))
     near = creases.near((low + high) / 2.0, np.sqrt(((high - low) ** 2).sum(axis=1)) / 2.0, most)
-    own = np.maximum.reduceat(latest_walls(cage)[mesh.face_vertex], mesh.face_start[:-1])
-    latest = np.maximum(own, np.where(near, creases.wall, -1).max(axis=1, initial=-1))
+    rank = 2 * _latest_cut(cage, vertices, most / creases.growth) + (near & creases.at_front).any(axis=1)
     rows = np.concatenate([creases.start, creases.step, creases.least[:, None]], axis=1)
     found: list[tuple[bytes, np.ndarray, np.ndarray]] = [
         (b"", np.zeros((0, 3, 3)), np.zeros((0, 3), dtype=int))
@@ -192,7 +191,19 @@ def _whole_faces(
         for face in new:
             own = owner == face
             found[face] = (found[face][0], panels[own], _numbered(nodes[own]))
-    return found, latest
+    return found, rank
+
+
+def _latest_cut(cage: Cage, vertices: np.ndarray, reach: float) -> np.ndarray:
+    """The latest cut whose plane each face comes near to, as its wall, -1 without: one that advances gets on there."""
+    mesh, frame = cage.mesh, UnitFrame.of(cage.vertices)
+    latest = np.full(cage.face_count, -1)
+    for number, wall in enumerate(cage.walls):
+        if wall.two_sided:
+            height = ((vertices - frame.to_unit(wall.origin)) * wall.normal).sum(axis=1)[mesh.face_vertex]
+            low, high = (ufunc.reduceat(height, mesh.face_start[:-1]) for ufunc in (np.minimum, np.maximum))
+            latest[np.maximum(low, -high) < reach] = number
+    return latest
 
 
 def _strips(
