@@ -320,7 +320,7 @@ class SolverCageCut(newton.solvers.SolverBase):
         Each has its ``body`` and, of a body with elasticity: ``steps`` in all, of which ``refused`` could not be made,
         for the ``reason`` of the last; ``limited``, whose solution was not taken whole; ``stalled``, where it was not
         taken at all; ``missed``, where a solve ended short of the tolerance; ``iterations`` and ``residual`` of the
-        last, ``most_iterations`` and ``worst_residual`` of all. Steps with integrator="paper" are not recorded.
+        last, ``most_iterations`` and ``worst_residual`` of all.
         """
         return self._watch.statistics()
 

@@ -122,13 +122,13 @@ class SimulatedBody:
             wp.copy(q_out, q_in)
             wp.copy(qd_out, qd_in)
         else:
-            term = None
+            points = None
             if self.contact is not None and contacts is not None:
                 self.contact.collect(state_in, contacts)
-                term = self.contact
+                points = self.contact.points
             forces = state_in.particle_f[self.vertices]
             q_old, qd_old = self._before_step(q_in, qd_in) if state_in is state_out else (q_in, qd_in)
-            self.system.step(q_in, qd_in, q_out, qd_out, dt, gravity=self.gravity, forces=forces, term=term)
+            self.system.step(q_in, qd_in, q_out, qd_out, dt, gravity=self.gravity, forces=forces, points=points)
             self._hold([q_old, qd_old, q_out, qd_out])
         if self.has_contact:
             if state_in is not state_out:
@@ -368,8 +368,7 @@ class SimulatedBody:
             piece=self.piece,
             integrator=self.config.integrator,
             newton_iterations=self.config.newton_iterations,
-            max_iterations=self.config.max_iterations,
-            tolerance=self.config.tolerance,
+            limits=self.config.limits,
         )
 
     def _padded(self, mask: np.ndarray) -> np.ndarray:
