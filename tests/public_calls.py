@@ -22,8 +22,9 @@ _POINTS = {"points": TABLE}
 CALLS: dict[str, Call] = {
     "Cage": Call(
         lambda w: cagecut.Cage,
-        lambda w: {"vertices": w.cage.vertices, "faces": w.cage.faces, "tolerance": 1e-6},
-        names={"vertices": ("vertex", "vertices"), "faces": ("face", "cage")},
+        lambda w: {"vertices": w.cage.vertices, "faces": w.cage.faces, "tolerance": 1e-6, "repair": False},
+        {"repair": ("True",)},
+        {"vertices": ("vertex", "vertices"), "faces": ("face", "cage")},
     ),
     "Cage.winding_numbers": Call(lambda w: w.cage.winding_numbers, lambda w: {"points": w.points}, _POINTS),
     "Cage.contains": Call(lambda w: w.cage.contains, lambda w: {"points": w.points}, _POINTS),
@@ -39,6 +40,9 @@ CALLS: dict[str, Call] = {
         lambda w: {"face": 1, "distance": 0.2},
         {"face": INDEX, "distance": POSITIVE},
         {"distance": ("moves", "run into")},
+    ),
+    "Cage.inflated": Call(
+        lambda w: w.cage.inflated, lambda w: {"distance": 0.1}, {"distance": ("1", "0.5", "1e9", "1e30", "a number")}
     ),
     "Cage.insert": Call(
         lambda w: w.cage.insert,
