@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
+from typing import TYPE_CHECKING
 
 import newton
 import numpy as np
@@ -29,6 +30,10 @@ from .plan import PlanEntry, plan_of, plan_of_scene
 from .progress_bars import fraction_bar
 from .viewing import SurfaceViewer
 from .warm_up import warm_up
+
+if TYPE_CHECKING:  # a scene without animations does not import USD
+    from ..usd import SceneFrame
+    from .scene_recorder import SceneRecorder
 
 
 class SolverCageCut(newton.solvers.SolverBase):
@@ -84,6 +89,7 @@ class SolverCageCut(newton.solvers.SolverBase):
             ]
         self._bodies = tuple(CageBody(body) for body in self._simulated)
         self._viewer = SurfaceViewer()
+        self._recorder: SceneRecorder | None = None
         labels, systems = zip(*((body.label, body.system) for body in self._simulated), strict=True)
         self._watch = StepWatch(labels, systems, model.device)
 
@@ -292,6 +298,21 @@ class SolverCageCut(newton.solvers.SolverBase):
         """Show the surfaces in any Newton viewer, with the topology of this frame; caps have a colour of their own."""
         for body in self._simulated:
             self._viewer.log(viewer, body, state)
+
+    def scene_frame(self, state: newton.State) -> SceneFrame:
+        """What the scene looks like in a state: for ``AnimationWriter.write_frame(frame, solver, state)``.
+
+        Args:
+            state: The state.
+
+        Raises:
+            ValueError: The state missed an edit of a body.
+        """
+        if self._recorder is None:
+            from .scene_recorder import SceneRecorder
+
+            self._recorder = SceneRecorder(self.model, self._simulated)
+        return self._recorder.frame(state)
 
     def statistics(self) -> list[dict[str, object]]:
         """How the steps of each body went, one record a body, read on the host.
