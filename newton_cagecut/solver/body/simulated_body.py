@@ -19,6 +19,7 @@ from ...harmonic import HarmonicCoordinates, Journal
 from ...surface import Surface
 from ..config import Config
 from ..contact.contact_term import ContactTerm
+from ..live.vertex_motion import finish_vertices, place_vertices, prescribe_motion
 from .body_quadrature import SPARE_COUNT, BodyQuadrature
 from .definition import BodyDefinition
 from .edit_stamps import EditStamps, hold_rows, state_edits
@@ -77,12 +78,12 @@ class SimulatedBody:
         self.rest = wp.clone(model.particle_q[self.vertices])
         self.fixed = wp.array(self._padded(definition.fixed), dtype=wp.int32, device=self.device)
         self.piece = wp.zeros(self.capacity.vertices, dtype=wp.int32, device=self.device)
-        world = int(model.particle_world.numpy()[vertex_start])
-        world_slot = world if world >= 0 else model.gravity.shape[0] - 1
-        self.gravity = model.gravity[world_slot : world_slot + 1]
+        self.world = int(model.particle_world.numpy()[vertex_start])
+        """World of the body, -1 for the global one."""
         self.system = self._make_system() if self.quadrature_count else None
         self.contact = ContactTerm(self) if self.has_contact and self.system else None
         self._surface_buffer = None
+        self._prescribed = wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device)
         self._held = tuple(wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device) for _ in range(2))
         self._always = wp.ones(1, dtype=wp.int32, device=self.device)
         self._triangles = wp.empty(self.capacity.surface_triangles, dtype=wp.vec3i, device=self.device)
@@ -100,6 +101,13 @@ class SimulatedBody:
         return self.cage.dimension == 2
 
     @property
+    def gravity(self) -> wp.array:
+        """Gravity in the body's world as the model has it now [m/s^2], shape (1,)."""
+        gravity = self.model.gravity
+        slot = self.world if self.world >= 0 else gravity.shape[0] - 1
+        return gravity[slot : slot + 1]
+
+    @property
     def surface_row(self) -> int:
         """Row of the surface's first point among the coordinates' points."""
         return self.quadrature_count
@@ -110,6 +118,7 @@ class SimulatedBody:
         state_out: newton.State,
         contacts: newton.Contacts | None,
         dt: float,
+        targets: wp.array,
     ) -> None:
         """Advance the cage's vertices, and the surface's particles with them; launches kernels only.
 
@@ -118,8 +127,8 @@ class SimulatedBody:
         q_in, qd_in = state_in.particle_q[self.vertices], state_in.particle_qd[self.vertices]
         q_out, qd_out = state_out.particle_q[self.vertices], state_out.particle_qd[self.vertices]
         if self.system is None:
-            wp.copy(q_out, q_in)
-            wp.copy(qd_out, qd_in)
+            inputs = [dt, q_in, qd_in, targets[self.vertices], self.is_current, q_out, qd_out]
+            wp.launch(place_vertices, dim=q_in.size, inputs=inputs, device=self.device)
         else:
             term = None
             if self.contact is not None and contacts is not None:
@@ -127,8 +136,12 @@ class SimulatedBody:
                 term = self.contact
             forces = state_in.particle_f[self.vertices]
             q_old, qd_old = self._before_step(q_in, qd_in) if state_in is state_out else (q_in, qd_in)
-            self.system.step(q_in, qd_in, q_out, qd_out, dt, gravity=self.gravity, forces=forces, term=term)
-            self._hold([q_old, qd_old, q_out, qd_out])
+            motion = [dt, q_in, qd_in, targets[self.vertices], self.is_current, self.fixed, self._prescribed]
+            wp.launch(prescribe_motion, dim=q_in.size, inputs=motion, device=self.device)
+            self.system.step(q_in, self._prescribed, q_out, qd_out, dt, gravity=self.gravity, forces=forces, term=term)
+            limits = [dt, self.model.particle_max_velocity, self.is_current, self.fixed]
+            rows = [q_old, qd_old, q_out, qd_out]
+            wp.launch(finish_vertices, dim=q_in.size, inputs=[*limits, *rows], device=self.device)
         if self.has_contact:
             if state_in is not state_out:
                 rows = self.surface_particles
