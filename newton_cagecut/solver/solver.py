@@ -257,14 +257,28 @@ class SolverCageCut(newton.solvers.SolverBase):
         """
         snapshot.restore()
 
-    def surface(self, state: newton.State, body: int | str = 0) -> tuple[np.ndarray, np.ndarray]:
+    def surface(
+        self, state: newton.State, body: int | str = 0, *, data: bool = False
+    ) -> tuple[np.ndarray, np.ndarray] | tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
         """The surface of a body in a state.
 
+        The mesh's own points come first, with their numbers; points that cuts have made come after them.
+
+        Args:
+            state: The state.
+            body: Index or label of the body.
+            data: Whether the arrays that were registered with the body are wanted, as they are now; see
+                ``Surface.data``.
+
         Returns:
-            Points in the world [m], shape (n, 3), float32, and triangles, shape (m, 3), int32.
+            Points in the world [m], shape (n, 3), float32, and triangles, shape (m, 3), int32; with ``data`` also
+            arrays by name, of shapes (n, ...), (m, 3, ...) and (m, ...).
         """
         found = self._simulated[self._row(body)]
-        return found.surface_points(state).numpy().copy(), np.array(found.surface.triangles, dtype=np.int32)
+        points, triangles = found.surface_points(state).numpy().copy(), found.surface.triangles.astype(np.int32)
+        if not data:
+            return points, triangles
+        return points, triangles, {name: array.copy() for name, array in found.surface.data.items()}
 
     def pieces(self, body: int | str = 0) -> tuple[BodyPiece, ...]:
         """The pieces that a body is in: vertices, faces, surface points and triangles, volume and mass of each.

@@ -23,7 +23,7 @@ from ..live.vertex_motion import finish_vertices, place_vertices, prescribe_moti
 from .body_quadrature import SPARE_COUNT, BodyQuadrature
 from .definition import BodyDefinition
 from .edit_stamps import EditStamps, hold_rows, state_edits
-from .embedding import embed, make_surface_rows
+from .embedding import SeamPoints, embed, make_surface_rows
 from .rest_frame import RestFrame
 
 _NUDGE = 1.0e-6
@@ -84,6 +84,7 @@ class SimulatedBody:
         self.contact = ContactTerm(self) if self.has_contact and self.system else None
         self._surface_buffer = None
         self._prescribed = wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device)
+        self._seams = SeamPoints()
         self._held = tuple(wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device) for _ in range(2))
         self._always = wp.ones(1, dtype=wp.int32, device=self.device)
         self._triangles = wp.empty(self.capacity.surface_triangles, dtype=wp.vec3i, device=self.device)
@@ -163,6 +164,16 @@ class SimulatedBody:
         """Whether the state of the last step was of the body's present edit, shape (1,), int32."""
         return self._stamps.is_current[self.row : self.row + 1]
 
+    @property
+    def edits(self) -> wp.array:
+        """Number of the body's present edit, shape (1,), int32."""
+        return self._stamps.edits[self.row : self.row + 1]
+
+    @property
+    def parts(self) -> list[slice]:
+        """The body's particles: the cage's vertices and, with contact, the surface's points."""
+        return [self.vertices, self.surface_particles] if self.has_contact else [self.vertices]
+
     def require_current(self, state: newton.State, what: str = "the state") -> None:
         """Refuse a state that missed an edit of the body; reads it on the host.
 
@@ -201,7 +212,8 @@ class SimulatedBody:
                 self._surface_buffer = wp.zeros(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
             points = self._surface_buffer
         self._embed(state.particle_q[self.vertices], points, None)
-        return points[: len(self.surface.points)]
+        sites = points[: self.surface.site_count]
+        return sites if self.surface.point_site is None else self._seams.points_of(self.surface, sites)
 
     def surface_triangles(self) -> wp.array:
         """Triangles of the surface, shape (triangle_count,) vec3i."""
@@ -210,11 +222,11 @@ class SimulatedBody:
     def set_surface(self, surface: Surface) -> None:
         """Take over a surface whose points are in the coordinates already."""
         self.surface = surface
-        self.point_count.fill_(surface.point_count)
+        self.point_count.fill_(surface.site_count)
         _write_rows(self._triangles, 0, np.asarray(surface.triangles, dtype=np.int32))
         if self.has_contact:
             start = self.surface_particles.start
-            flags = np.full(len(surface.points), int(newton.ParticleFlags.ACTIVE), dtype=np.int32)
+            flags = np.full(surface.site_count, int(newton.ParticleFlags.ACTIVE), dtype=np.int32)
             _write_rows(self.model.particle_flags, start, flags)
 
     def to_world(self, points: np.ndarray) -> np.ndarray:
@@ -240,11 +252,10 @@ class SimulatedBody:
             states: States that are carried over.
         """
         model, row = self.model, slice(self.row, self.row + 1)
-        parts = [self.vertices, self.surface_particles] if self.has_contact else [self.vertices]
         arrays = [self.rest, self.fixed, self.vertex_count, self.point_count, self._triangles]
         arrays += [self._stamps.edits[row], *(state_edits(owner)[row] for owner in (model, *states))]
         owners = (model, *states)
-        arrays += [array[part] for o in owners for array in (o.particle_q, o.particle_qd) for part in parts]
+        arrays += [array[part] for o in owners for array in (o.particle_q, o.particle_qd) for part in self.parts]
         if self.has_contact:
             arrays.append(model.particle_flags[self.surface_particles])
         if self.system is not None:
@@ -303,17 +314,19 @@ class SimulatedBody:
             return Energy(0.0, 0.0)
         return self.system.energy(state.particle_q[self.vertices], state.particle_qd[self.vertices])
 
-    def nudged_points(self, surface: Surface, indices: np.ndarray) -> np.ndarray:
-        """Points of a surface, moved by next to nothing off other cuts that they may lie on, into their own piece.
+    def nudged_sites(self, surface: Surface, indices: np.ndarray) -> np.ndarray:
+        """Sites of a surface, moved by next to nothing off other cuts that they may lie on, into their own piece.
 
         Args:
             surface: The surface.
-            indices: Points of it, shape (n,).
+            indices: Which of them, shape (n,).
 
         Returns:
             Rest positions [m], shape (n, dimension).
         """
-        return surface.points[indices] + _NUDGE * self.definition.cage.diameter * surface.directions_inward(indices)
+        return surface.site_points[indices] + _NUDGE * self.definition.cage.diameter * surface.directions_inward(
+            indices
+        )
 
     def _embed(self, vertices: wp.array, points: wp.array, enabled: wp.array | None) -> None:
         inputs = [self._always if enabled is None else enabled, vertices, self.surface_rows, points]
@@ -336,11 +349,11 @@ class SimulatedBody:
         quadrature = np.zeros((0, definition.cage.dimension))
         if self.quadrature is not None:
             quadrature = self.quadrature.points
-        surface_points = surface.points.copy()
-        on_cuts = np.flatnonzero(surface.point_key >= 0)
+        sites = surface.site_points.copy()
+        on_cuts = np.flatnonzero(surface.site_key >= 0)
         if len(on_cuts):
-            surface_points[on_cuts] = self.nudged_points(surface, on_cuts)
-        points = np.concatenate([quadrature, surface_points])
+            sites[on_cuts] = self.nudged_sites(surface, on_cuts)
+        points = np.concatenate([quadrature, sites])
         return HarmonicCoordinates(
             definition.cage,
             points,
@@ -349,7 +362,7 @@ class SimulatedBody:
             gradients=np.arange(len(points)) < len(quadrature),
             cuttable=definition.cuttable,
             device=self.device,
-            point_keys=np.concatenate([np.full(len(quadrature), -1), surface.point_key]),
+            point_keys=np.concatenate([np.full(len(quadrature), -1), surface.site_key]),
             point_capacity=len(quadrature) + self.capacity.surface_points,
             vertex_capacity=self.capacity.vertices,
             progress=progress,
