@@ -39,8 +39,8 @@ _ROWS = (
 )
 """Name, type, what it refers to, whose attribute it is, and default of each row; ``edit``: see ``edit_stamps``."""
 
-NO_TARGET = (math.nan, math.nan, math.nan)
-"""Where a vertex without a target is to go."""
+NO_TARGET = (math.inf, math.inf, math.inf)
+"""Where a vertex without a target is to go; not NaN, which Newton finds unequal to itself when builders are merged."""
 
 
 def register_custom_attributes(builder: newton.ModelBuilder) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 
-from ..elastic import INTEGRATORS
+from ..elastic import INTEGRATORS, SolveLimits
 from ..geometry import as_index, as_number
 from .live.foreign_rows import FOREIGN_ROWS
 
@@ -39,6 +39,10 @@ class Config:
     """What a step does with rows of ``state_out`` that are not of cage bodies, such as rigid bodies and plain particles:
     ``"copy"`` them from ``state_in``, or ``"keep"`` those that another solver has written before."""
 
+    dense_vertices: int = SolveLimits().dense_vertices
+    """Most cage vertices, spare ones included, of a body whose solves have a dense factor of its matrix; a larger one
+    has the inverses of the matrix's diagonal blocks."""
+
     def __post_init__(self) -> None:
         if self.foreign not in FOREIGN_ROWS:
             names = ", ".join(map(repr, FOREIGN_ROWS))
@@ -56,8 +60,16 @@ class Config:
         object.__setattr__(self, "tolerance", as_number(self.tolerance, "SolverCageCut tolerance"))
         if self.max_iterations < 1:
             raise ValueError(f"SolverCageCut max_iterations must be at least 1, got {self.max_iterations}")
+        object.__setattr__(self, "dense_vertices", as_index(self.dense_vertices, "SolverCageCut dense_vertices"))
+        if self.dense_vertices < 0:
+            raise ValueError(f"SolverCageCut dense_vertices must not be negative, got {self.dense_vertices}")
         if not 0.0 < self.tolerance < 1.0:
             raise ValueError(f"SolverCageCut tolerance must lie in (0, 1), got {self.tolerance}: larger is faster")
+
+    @property
+    def limits(self) -> SolveLimits:
+        """How exactly linear systems are solved."""
+        return SolveLimits(self.max_iterations, self.tolerance, self.dense_vertices)
 
     @classmethod
     def of(cls, config: Config | None, options: dict[str, object]) -> Config:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
+from typing import TYPE_CHECKING
 
 import newton
 import numpy as np
@@ -31,6 +32,10 @@ from .plan import PlanEntry, plan_of, plan_of_scene
 from .progress_bars import fraction_bar
 from .viewing import SurfaceViewer
 from .warm_up import warm_up
+
+if TYPE_CHECKING:  # a scene without animations does not import USD
+    from ..usd import SceneFrame
+    from .scene_recorder import SceneRecorder
 
 
 class SolverCageCut(newton.solvers.SolverBase):
@@ -88,6 +93,7 @@ class SolverCageCut(newton.solvers.SolverBase):
         parts = [part for body in self._bodies for part in (body.vertices, body.surface_particles) if part is not None]
         self._foreign = ForeignRows(model, parts, self._config.foreign)
         self._viewer = SurfaceViewer()
+        self._recorder: SceneRecorder | None = None
         labels, systems = zip(*((body.label, body.system) for body in self._simulated), strict=True)
         self._watch = StepWatch(labels, systems, model.device)
 
@@ -139,7 +145,7 @@ class SolverCageCut(newton.solvers.SolverBase):
         Args:
             state_in: State before the step.
             state_out: State after it; may be the same.
-            control: Where fixed vertices are to go: rows of ``control.cagecut.target_q``, one a particle, [m]; NaN, which
+            control: Where fixed vertices are to go: rows of ``control.cagecut.target_q``, one a particle, [m]; infinity, which
                 all are at first, keeps a vertex where it is. The model's own without a control.
             contacts: Contacts of Newton's collision pipeline, for bodies with a contact radius.
             dt: Time step [s].
@@ -296,13 +302,28 @@ class SolverCageCut(newton.solvers.SolverBase):
         for body in self._simulated:
             self._viewer.log(viewer, body, state)
 
+    def scene_frame(self, state: newton.State) -> SceneFrame:
+        """What the scene looks like in a state: for ``AnimationWriter.write_frame(frame, solver, state)``.
+
+        Args:
+            state: The state.
+
+        Raises:
+            ValueError: The state missed an edit of a body.
+        """
+        if self._recorder is None:
+            from .scene_recorder import SceneRecorder
+
+            self._recorder = SceneRecorder(self.model, self._simulated)
+        return self._recorder.frame(state)
+
     def statistics(self) -> list[dict[str, object]]:
         """How the steps of each body went, one record a body, read on the host.
 
         Each has its ``body`` and, of a body with elasticity: ``steps`` in all, of which ``refused`` could not be made,
         for the ``reason`` of the last; ``limited``, whose solution was not taken whole; ``stalled``, where it was not
         taken at all; ``missed``, where a solve ended short of the tolerance; ``iterations`` and ``residual`` of the
-        last, ``most_iterations`` and ``worst_residual`` of all. Steps with integrator="paper" are not recorded.
+        last, ``most_iterations`` and ``worst_residual`` of all.
         """
         return self._watch.statistics()
 

@@ -131,15 +131,17 @@ class SimulatedBody:
             inputs = [dt, q_in, qd_in, targets[self.vertices], self.is_current, q_out, qd_out]
             wp.launch(place_vertices, dim=q_in.size, inputs=inputs, device=self.device)
         else:
-            term = None
+            points = None
             if self.contact is not None and contacts is not None:
                 self.contact.collect(state_in, contacts)
-                term = self.contact
+                points = self.contact.points
             forces = state_in.particle_f[self.vertices]
             q_old, qd_old = self._before_step(q_in, qd_in) if state_in is state_out else (q_in, qd_in)
             motion = [dt, q_in, qd_in, targets[self.vertices], self.is_current, self.fixed, self._prescribed]
             wp.launch(prescribe_motion, dim=q_in.size, inputs=motion, device=self.device)
-            self.system.step(q_in, self._prescribed, q_out, qd_out, dt, gravity=self.gravity, forces=forces, term=term)
+            self.system.step(
+                q_in, self._prescribed, q_out, qd_out, dt, gravity=self.gravity, forces=forces, points=points
+            )
             limits = [dt, self.model.particle_max_velocity, self.is_current, self.fixed]
             rows = [q_old, qd_old, q_out, qd_out]
             wp.launch(finish_vertices, dim=q_in.size, inputs=[*limits, *rows], device=self.device)
@@ -214,6 +216,13 @@ class SimulatedBody:
         self._embed(state.particle_q[self.vertices], points, None)
         sites = points[: self.surface.site_count]
         return sites if self.surface.point_site is None else self._seams.points_of(self.surface, sites)
+
+    def surface_velocities(self, state: newton.State) -> wp.array:
+        """Velocities of the surface's points [m/s], shape (point_count,)."""
+        self.require_current(state)
+        velocities = wp.empty(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
+        self._embed(state.particle_qd[self.vertices], velocities, None)
+        return velocities[: len(self.surface.points)]
 
     def surface_triangles(self) -> wp.array:
         """Triangles of the surface, shape (triangle_count,) vec3i."""
@@ -383,8 +392,7 @@ class SimulatedBody:
             piece=self.piece,
             integrator=self.config.integrator,
             newton_iterations=self.config.newton_iterations,
-            max_iterations=self.config.max_iterations,
-            tolerance=self.config.tolerance,
+            limits=self.config.limits,
         )
 
     def _padded(self, mask: np.ndarray) -> np.ndarray:

@@ -13,7 +13,9 @@ from ..body.simulated_body import SimulatedBody
 
 wp.set_module_options({"enable_backward": False})
 
-_Q, _QD, _F = (int(flag) for flag in (newton.StateFlags.PARTICLE_Q, newton.StateFlags.PARTICLE_QD, newton.StateFlags.PARTICLE_F))
+_Q, _QD, _F = (
+    int(flag) for flag in (newton.StateFlags.PARTICLE_Q, newton.StateFlags.PARTICLE_QD, newton.StateFlags.PARTICLE_F)
+)
 
 
 @wp.kernel(enable_backward=False)

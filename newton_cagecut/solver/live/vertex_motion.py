@@ -5,7 +5,7 @@
 
 A fixed vertex with a target goes there in a straight line within the step, and has that line's velocity in it; without
 one it stays where it is. Of a body without elasticity every vertex can have a target. Targets are the rows of
-``control.cagecut.target_q``, one a particle; NaN is no target.
+``control.cagecut.target_q``, one a particle; infinity is no target.
 """
 
 from __future__ import annotations
