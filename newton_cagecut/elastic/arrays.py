@@ -53,8 +53,8 @@ class BodyArrays:
     vertex_count: wp.array[int]
     """Number of vertices in use, shape (1,)."""
     fixed: wp.array[int]
-    """0 for free vertices, ``HELD`` for those that a step does not move, ``DRIVEN`` for those that it moves at their given
-    velocity, one a vertex."""
+    """0 for free vertices, ``HELD`` for those that a step does not move, ``DRIVEN`` for those that it moves at their
+    given velocity, one a vertex."""
     rest: wp.array[wp.vec3]
     """Rest positions, one a vertex [m]."""
     rotation: wp.array[wp.mat33]

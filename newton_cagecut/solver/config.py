@@ -36,7 +36,7 @@ class Config:
     """Factor by which a step's linear solve shrinks the preconditioned residual, in (0, 1)."""
 
     foreign: str = "copy"
-    """What a step does with rows of ``state_out`` that are not of cage bodies, such as rigid bodies and plain particles:
+    """What a step does with rows of ``state_out`` that are not of cage bodies, such as rigid bodies and particles:
     ``"copy"`` them from ``state_in``, or ``"keep"`` those that another solver has written before."""
 
     dense_vertices: int = SolveLimits().dense_vertices

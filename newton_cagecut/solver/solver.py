@@ -27,6 +27,7 @@ from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
 from .live.foreign_rows import ForeignRows
+from .live.live_solver import LiveSolver, refuse_gradients, refuse_state_gradients
 from .live.vertex_motion import targets_of
 from .plan import PlanEntry, plan_of, plan_of_scene
 from .progress_bars import fraction_bar
@@ -38,7 +39,7 @@ if TYPE_CHECKING:  # a scene without animations does not import USD
     from .scene_recorder import SceneRecorder
 
 
-class SolverCageCut(newton.solvers.SolverBase):
+class SolverCageCut(LiveSolver):
     """Simulates the cage bodies of a model and cuts them.
 
     Each body is a reduced elastic model whose shape functions are the harmonic coordinates of its cage, advanced by
@@ -69,6 +70,7 @@ class SolverCageCut(newton.solvers.SolverBase):
     ) -> None:
         self._config = Config.of(config, options)
         super().__init__(model)
+        refuse_gradients(model)
         rows = getattr(model, "cagecut", None)
         definitions = list(rows.definition) if rows is not None else []
         if not definitions:
@@ -145,8 +147,8 @@ class SolverCageCut(newton.solvers.SolverBase):
         Args:
             state_in: State before the step.
             state_out: State after it; may be the same.
-            control: Where fixed vertices are to go: rows of ``control.cagecut.target_q``, one a particle, [m]; infinity, which
-                all are at first, keeps a vertex where it is. The model's own without a control.
+            control: Where fixed vertices are to go: rows of ``control.cagecut.target_q``, one a particle [m]; infinity,
+                which all are at first, keeps a vertex where it is. The model's own without a control.
             contacts: Contacts of Newton's collision pipeline, for bodies with a contact radius.
             dt: Time step [s].
             observables: Not supported beyond Newton's checks.
@@ -162,6 +164,7 @@ class SolverCageCut(newton.solvers.SolverBase):
         self.validate_observables(observables, contacts)
         self._require_unreduced_contacts(contacts)
         targets = targets_of(self.model, control)
+        refuse_state_gradients(state_in)
         self._stamps.compare(state_in)
         if not self.model.device.is_capturing:
             self._watch.warn()

@@ -15,7 +15,7 @@ import warp as wp
 
 from ...cage import Cage
 from ...elastic import Energy, ReducedSystem
-from ...harmonic import HarmonicCoordinates, Journal
+from ...harmonic import CoordinatesSnapshot, HarmonicCoordinates, Journal
 from ...surface import Surface
 from ..config import Config
 from ..contact.contact_term import ContactTerm
@@ -63,9 +63,9 @@ class SimulatedBody:
         self.surface_particles = slice(surface_start, surface_start + self.capacity.surface_points)
         self.has_contact = surface_start >= 0
         self._frame = RestFrame.of_particles(definition.cage.vertices, model.particle_q.numpy()[vertex_start:])
-        self.quadrature = self._sample()
+        self.quadrature = self._sample(definition)
         self.quadrature_count = len(self.quadrature.points) if self.quadrature else 0
-        self.coordinates = self._bake(progress)
+        self.coordinates = self._bake(definition, self.quadrature, progress)
         # Counts live on the device and launches cover the capacity, so that a captured graph stays valid across cuts.
         self.point_count = wp.zeros(1, dtype=wp.int32, device=self.device)
         self.vertex_count = wp.array([definition.cage.vertex_count], dtype=wp.int32, device=self.device)
@@ -83,6 +83,7 @@ class SimulatedBody:
         self.system = self._make_system() if self.quadrature_count else None
         self.contact = ContactTerm(self) if self.has_contact and self.system else None
         self._surface_buffer = None
+        self.uncut: tuple[BodyQuadrature | None, CoordinatesSnapshot] | None = None
         self._prescribed = wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device)
         self._seams = SeamPoints()
         self._held = tuple(wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device) for _ in range(2))
@@ -283,6 +284,7 @@ class SimulatedBody:
             cage=self.cage,
             surface=self.surface,
             fixed=self.fixed.numpy()[: self.cage.vertex_count] != 0,
+            uncut=self.definition.before_cuts if number > 0 else None,
             edit=number,
             last_edit=max(number, self.definition.last_edit),
         )
@@ -314,7 +316,11 @@ class SimulatedBody:
             self.piece.assign(self._padded(self.cage.vertex_piece))
             self.system.stabilize(self.cage.vertices, self.cage.mesh.edges)
             self.system.refresh()
-            wp.copy(self.model.particle_mass[self.vertices], self.system.vertex_mass)
+            self.show_masses()
+
+    def show_masses(self) -> None:
+        """Bring the model's masses up to date with the system's."""
+        wp.copy(self.model.particle_mass[self.vertices], self.system.vertex_mass)
 
     def energy(self, state: newton.State) -> Energy:
         """Elastic and kinetic energy of a state [J], read on the host."""
@@ -341,8 +347,7 @@ class SimulatedBody:
         inputs = [self._always if enabled is None else enabled, vertices, self.surface_rows, points]
         wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
 
-    def _sample(self) -> BodyQuadrature | None:
-        definition = self.definition
+    def _sample(self, definition: BodyDefinition) -> BodyQuadrature | None:
         if not definition.quadrature_count:
             return None
         return BodyQuadrature.sampled(
@@ -353,11 +358,23 @@ class SimulatedBody:
             thickness=definition.thickness,
         )
 
-    def _bake(self, progress: Callable[[float], None] | None) -> HarmonicCoordinates:
-        definition, surface = self.definition, self.definition.surface
-        quadrature = np.zeros((0, definition.cage.dimension))
-        if self.quadrature is not None:
-            quadrature = self.quadrature.points
+    def fresh(self, definition: BodyDefinition) -> tuple[BodyQuadrature | None, HarmonicCoordinates]:
+        """Quadrature and coordinates as a new solver would make them; nothing of the body changes.
+
+        Args:
+            definition: What the body is made of.
+        """
+        sample = self._sample(definition)
+        return sample, self._bake(definition, sample, None)
+
+    def _bake(
+        self,
+        definition: BodyDefinition,
+        sample: BodyQuadrature | None,
+        progress: Callable[[float], None] | None,
+    ) -> HarmonicCoordinates:
+        surface = definition.surface
+        quadrature = np.zeros((0, definition.cage.dimension)) if sample is None else sample.points
         sites = surface.site_points.copy()
         on_cuts = np.flatnonzero(surface.site_key >= 0)
         if len(on_cuts):

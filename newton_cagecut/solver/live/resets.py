@@ -13,9 +13,9 @@ from ..body.simulated_body import SimulatedBody
 
 wp.set_module_options({"enable_backward": False})
 
-_Q, _QD, _F = (
-    int(flag) for flag in (newton.StateFlags.PARTICLE_Q, newton.StateFlags.PARTICLE_QD, newton.StateFlags.PARTICLE_F)
-)
+_Q = wp.constant(int(newton.StateFlags.PARTICLE_Q))
+_QD = wp.constant(int(newton.StateFlags.PARTICLE_QD))
+_F = wp.constant(int(newton.StateFlags.PARTICLE_F))
 
 
 @wp.kernel(enable_backward=False)
