@@ -13,19 +13,23 @@ from functools import cached_property
 
 import numpy as np
 
-from ..geometry import PolygonMesh, as_loops, as_points, triangulate_faces, units, winding_numbers
+from ..geometry import PolygonMesh, as_length, as_loops, as_points, triangulate_faces, units, winding_numbers
 from .checks import topology
 from .edits import extrusion, refinement
 from .edits.edit import CageEdit
 from .edits.obstacle import insert_obstacle
+from .inflation import moved_out
 from .pieces import component_piece
+from .repair import repaired
 from .wall import Wall, face_walls
 
 
 class Cage:
     """A closed, consistently oriented manifold of planar polygons, or of segments in the plane; immutable."""
 
-    def __init__(self, vertices: np.ndarray, faces: Sequence[Sequence[int]], *, tolerance: float = 1e-6):
+    def __init__(
+        self, vertices: np.ndarray, faces: Sequence[Sequence[int]], *, tolerance: float = 1e-6, repair: bool = False
+    ):
         """Validate and build a cage.
 
         Args:
@@ -33,6 +37,8 @@ class Cage:
             faces: Loops of vertex ids, counterclockwise seen from outside. In the plane segments (a, b) with the inside
                 to their left: outer loops counterclockwise, those around holes clockwise.
             tolerance: Length below which things coincide, relative to the diagonal of the bounding box.
+            repair: Whether faces that are not planar are cut into triangles, outwards where that goes, and a cage that
+                is inside out is turned. Vertices stay what they are.
 
         Raises:
             TypeError: If the vertices are not numbers or the faces not sequences of integers.
@@ -45,6 +51,17 @@ class Cage:
         topology.check_loops(positions, face_start, face_vertex, simple=True)
         self.tolerance = float(tolerance)
         self.diameter = float(np.linalg.norm(positions.max(axis=0) - positions.min(axis=0)))
+        if repair:
+            face_start, face_vertex = as_loops(
+                repaired(
+                    positions,
+                    face_start,
+                    face_vertex,
+                    tolerance=self.length_tolerance,
+                    build=lambda loops: Cage(positions, loops, tolerance=tolerance),
+                ),
+                "the cage",
+            )
         self.mesh = PolygonMesh(positions, face_start, face_vertex)
         topology.check_boundary(self.mesh, self.length_tolerance)
         normals = units(self.mesh.face_area_vector)
@@ -318,6 +335,33 @@ class Cage:
         cage = Cage._assembled(self, mesh, self.walls, self.face_wall[parent], self.face_side[parent])
         cage.validate()
         return cage
+
+    def triangulated(self) -> Cage:
+        """The cage with all its faces cut into triangles, in their planes; the cage stays as it is.
+
+        Faces that are not planar are cut where a cage is made of them: ``Cage(vertices, faces, repair=True)``.
+
+        Raises:
+            ValueError: If the cage has been cut, or is a plane one.
+        """
+        refinement.refuse_cuts(self, "cut it into triangles")
+        return Cage(self.vertices, self.triangles, tolerance=self.tolerance)
+
+    def inflated(self, distance: float) -> Cage:
+        """The cage with its faces moved outward by a distance at least; the cage stays as it is.
+
+        Around corners of more than three planes, in the plane never, faces may bend; those are cut into triangles.
+
+        Args:
+            distance: The distance [m].
+
+        Raises:
+            TypeError: If the distance is not a number.
+            ValueError: If it is not positive, the cage has been cut, or faces would cross each other.
+        """
+        length = as_length(distance, "the distance")
+        refinement.refuse_cuts(self, "inflate it")
+        return Cage(moved_out(self, length), self.faces, tolerance=self.tolerance, repair=True)
 
     def insert(self, obstacle: Cage) -> CageEdit:
         """Take the room of an obstacle from the body; the cage stays as it is.

@@ -9,7 +9,7 @@ from .energy import Energy
 from .material import Material
 from .quadrature import exact_volumes, sample_quadrature
 from .solve.linear_solver import SolveLimits
-from .solve.point_forces import PointForces
+from .solve.point_forces import PointForces, make_point_forces
 from .stages.step_record import COUNT_NAMES as STEP_COUNTS
 from .system import INTEGRATORS, ReducedSystem
 
@@ -25,5 +25,6 @@ __all__ = [
     "ReducedSystem",
     "SolveLimits",
     "exact_volumes",
+    "make_point_forces",
     "sample_quadrature",
 ]

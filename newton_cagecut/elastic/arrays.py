@@ -115,6 +115,8 @@ class StepArrays:
     """Stiffness times volume and time scale, one a point."""
     moduli: wp.array2d[float]
     """The same as symmetric 9x9 matrices, one a column; see ``solve/lanes.py``, also of those below."""
+    blocks: wp.array2d[wp.mat33]
+    """The same for the assembled matrix, one a point and pair of components; none where it is not assembled."""
     tensions: wp.array2d[float]
     """Stress, or its change with a direction, times volume and time scale, one a column."""
     strain: wp.array2d[float]

@@ -133,7 +133,7 @@ def _feature(held: HeldArray) -> str:
         return "surface"
     if first != "coordinates":
         return "vertices"
-    if path & {"fit", "residuals", "known_faces"}:
+    if path & {"fit", "residuals", "memory", "fitted_rows"}:
         return "fitted weights"
     if "records" in path:
         return "walk cache"

@@ -23,7 +23,7 @@ from ..live.vertex_motion import finish_vertices, place_vertices, prescribe_moti
 from .body_quadrature import SPARE_COUNT, BodyQuadrature
 from .definition import BodyDefinition
 from .edit_stamps import EditStamps, hold_rows, state_edits
-from .embedding import SeamPoints, embed, make_surface_rows
+from .embedding import Motion, SeamPoints, embed, embed_motion, join_motion, make_surface_rows
 from .rest_frame import RestFrame
 
 _NUDGE = 1.0e-6
@@ -87,6 +87,7 @@ class SimulatedBody:
         self._prescribed = wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device)
         self._seams = SeamPoints()
         self._held = tuple(wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device) for _ in range(2))
+        self._motion = wp.zeros(self.capacity.vertices if self.has_contact else 0, dtype=Motion, device=self.device)
         self._always = wp.ones(1, dtype=wp.int32, device=self.device)
         self._triangles = wp.empty(self.capacity.surface_triangles, dtype=wp.vec3i, device=self.device)
         self.set_surface(self.surface)
@@ -202,8 +203,12 @@ class SimulatedBody:
             state: The state, or the model with its initial one.
             enabled: Zero where they are to stay, shape (1,), int32; None for always.
         """
-        self._embed(state.particle_q[self.vertices], state.particle_q[self.surface_particles], enabled)
-        self._embed(state.particle_qd[self.vertices], state.particle_qd[self.surface_particles], enabled)
+        vertices, rows = self.vertices, self.surface_particles
+        inputs = [state.particle_q[vertices], state.particle_qd[vertices], self._motion]
+        wp.launch(join_motion, dim=self.capacity.vertices, inputs=inputs, device=self.device)
+        inputs = [self._always if enabled is None else enabled, self._motion, self.surface_rows]
+        inputs += [state.particle_q[rows], state.particle_qd[rows]]
+        wp.launch(embed_motion, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
 
     def surface_points(self, state: newton.State) -> wp.array:
         """Positions of the surface's points [m], shape (point_count,), a view that the next call overwrites."""
@@ -214,7 +219,8 @@ class SimulatedBody:
             if self._surface_buffer is None:
                 self._surface_buffer = wp.zeros(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
             points = self._surface_buffer
-        self._embed(state.particle_q[self.vertices], points, None)
+        inputs = [state.particle_q[self.vertices], self.surface_rows, points]
+        wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
         sites = points[: self.surface.site_count]
         return sites if self.surface.point_site is None else self._seams.points_of(self.surface, sites)
 
@@ -342,10 +348,6 @@ class SimulatedBody:
         return surface.site_points[indices] + _NUDGE * self.definition.cage.diameter * surface.directions_inward(
             indices
         )
-
-    def _embed(self, vertices: wp.array, points: wp.array, enabled: wp.array | None) -> None:
-        inputs = [self._always if enabled is None else enabled, vertices, self.surface_rows, points]
-        wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
 
     def _sample(self, definition: BodyDefinition) -> BodyQuadrature | None:
         if not definition.quadrature_count:
