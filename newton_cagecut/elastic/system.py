@@ -103,7 +103,7 @@ class ReducedSystem:
         self.mass, self.vertex_mass = body.mass, body.vertex_mass
         self.stabilizing_stiffness, self.stabilizing_mass = body.stabilizing_stiffness, body.stabilizing_mass
         self.record = make_step_record(self.device, None, None)
-        options = {"limits": SolveLimits() if limits is None else limits, "record": self.record}
+        options = {"limits": (limits or SolveLimits()).measured(material.poisson), "record": self.record}
         if integrator == "paper":
             self._integrator = BackwardEuler(body, material.model, **options)
         else:

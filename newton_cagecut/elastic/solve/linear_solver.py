@@ -20,8 +20,8 @@ from .point_forces import PointForces, make_point_forces
 from .point_kernels import add_point_product, add_point_residual
 from .stiffness_matrix import ROWS, add_points, make_assembly_kernel, make_column_kernel, make_dense_matrix
 
-DENSE_VERTICES = 600
-"""Vertices, spare ones included, up to which a factor pays; measured by ``benchmarks.solve``."""
+_NEARLY_INCOMPRESSIBLE = 0.45
+"""Poisson's ratio from which on the iterations without a factor are many."""
 
 
 class SolveLimits(NamedTuple):
@@ -31,8 +31,15 @@ class SolveLimits(NamedTuple):
     """Most iterations of a solve."""
     tolerance: float = 1.0e-5
     """Factor by which a solve shrinks the preconditioned residual."""
-    dense_vertices: int = DENSE_VERTICES
-    """Most vertices, spare ones included, with which a dense factor conditions the iterations."""
+    dense_vertices: int | None = None
+    """Most vertices in use, when the system is made, with which a dense factor conditions the iterations; None for what
+    ``benchmarks.solve`` has measured to pay."""
+
+    def measured(self, poisson: float) -> SolveLimits:
+        """The same with the number of vertices up to which a factor pays at a Poisson's ratio, unless it is given."""
+        if self.dense_vertices is not None:
+            return self
+        return self._replace(dense_vertices=300 if poisson >= _NEARLY_INCOMPRESSIBLE else 110)
 
 
 class LinearSolver:
@@ -44,13 +51,13 @@ class LinearSolver:
         body: The body.
         step: What its steps work on.
         system: The system.
-        limits: How exactly they are solved.
+        limits: How exactly they are solved, measured.
     """
 
     def __init__(self, body: BodyArrays, step: StepArrays, system: LinearSystem, limits: SolveLimits) -> None:
         capacity, self.device = body.rest.shape[0], body.rest.device
         self.body, self.step, self.system, self.limits = body, step, system, limits
-        self.is_dense = capacity <= limits.dense_vertices
+        self.is_dense = int(body.vertex_count.numpy()[0]) <= limits.dense_vertices
         self.width = width = lanes.lane_width(self.device)
         rows = padded_count(capacity)
         self.lanes, self.search = lanes.make_lanes(body, step, width), make_search(rows, self.device)
