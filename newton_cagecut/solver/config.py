@@ -35,20 +35,14 @@ class Config:
     tolerance: float = 1.0e-5
     """Factor by which a step's linear solve shrinks the preconditioned residual, in (0, 1)."""
 
-<<<<<<< HEAD
     foreign: str = "copy"
     """What a step does with rows of ``state_out`` that are not of cage bodies, such as rigid bodies and particles:
     ``"copy"`` them from ``state_in``, or ``"keep"`` those that another solver has written before."""
 
-    dense_vertices: int = SolveLimits().dense_vertices
-    """Most cage vertices, spare ones included, of a body whose solves have a dense factor of its matrix; a larger one
-    has the inverses of the matrix's diagonal blocks."""
-=======
     dense_vertices: int | None = None
     """Most vertices of a cage, when the solver is made, whose solves have a dense factor of the matrix, at least 0;
     larger ones have the inverses of its diagonal blocks. None for what was measured to pay: 110, or 300 for Poisson's
     ratios from 0.45 on, whose solves without a factor miss the tolerance."""
->>>>>>> main
 
     def __post_init__(self) -> None:
         if self.foreign not in FOREIGN_ROWS:
