@@ -3,6 +3,7 @@
 
 """The elastic body inside a cage: materials, quadrature and the reduced system (paper, section 6.1)."""
 
+from .arrays import DRIVEN, HELD
 from .constitutive import ConstitutiveModel
 from .energy import Energy
 from .material import Material
@@ -13,6 +14,8 @@ from .stages.step_record import COUNT_NAMES as STEP_COUNTS
 from .system import INTEGRATORS, ReducedSystem
 
 __all__ = [
+    "DRIVEN",
+    "HELD",
     "INTEGRATORS",
     "STEP_COUNTS",
     "ConstitutiveModel",

@@ -45,7 +45,8 @@ class ReducedSystem:
             areas times its thickness.
         material: The material.
         vertex_count: Number of vertices in use, shape (1,) int.
-        fixed: Nonzero for vertices that a step does not move, shape (vertex_capacity,) int; none if not given.
+        fixed: 0 for free vertices, ``HELD`` for those that a step does not move, ``DRIVEN`` for those that it moves at
+            their given velocity, shape (vertex_capacity,) int; all free if not given.
         rotation: Rotation from the gradients' frame to that of the rest positions, shape (1,) mat33; identity if not
             given.
         piece: The piece that a vertex belongs to, counted from 0, shape (vertex_capacity,) int; all one if not given.

@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields, replace
 
 from ..elastic import INTEGRATORS, SolveLimits
 from ..geometry import as_index, as_number
+from .live.foreign_rows import FOREIGN_ROWS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,12 +35,19 @@ class Config:
     tolerance: float = 1.0e-5
     """Factor by which a step's linear solve shrinks the preconditioned residual, in (0, 1)."""
 
+    foreign: str = "copy"
+    """What a step does with rows of ``state_out`` that are not of cage bodies, such as rigid bodies and particles:
+    ``"copy"`` them from ``state_in``, or ``"keep"`` those that another solver has written before."""
+
     dense_vertices: int | None = None
     """Most vertices of a cage, when the solver is made, whose solves have a dense factor of the matrix, at least 0;
     larger ones have the inverses of its diagonal blocks. None for what was measured to pay: 110, or 300 for Poisson's
     ratios from 0.45 on, whose solves without a factor miss the tolerance."""
 
     def __post_init__(self) -> None:
+        if self.foreign not in FOREIGN_ROWS:
+            names = ", ".join(map(repr, FOREIGN_ROWS))
+            raise ValueError(f"SolverCageCut foreign must be one of {names}, got {self.foreign!r}")
         if self.integrator not in INTEGRATORS:
             names = ", ".join(map(repr, INTEGRATORS))
             raise ValueError(f"SolverCageCut integrator must be one of {names}, got {self.integrator!r}")
