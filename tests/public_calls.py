@@ -125,6 +125,7 @@ CALLS: dict[str, Call] = {
         {"points": OPTION},
         {"edit": ("edit",)},
     ),
+    "HarmonicCoordinates.snapshot": Call(lambda w: w.coordinates.snapshot, lambda w: {"of": None}, {"of": OPTION}),
     "HarmonicCoordinates.restore": Call(
         lambda w: w.coordinates.restore, lambda w: {"snapshot": w.coordinates.snapshot()}
     ),
@@ -300,7 +301,7 @@ CALLS: dict[str, Call] = {
             "dense_vertices": 100,
         },
         {
-            "dense_vertices": ("0", "1", "1e9", "1e30"),
+            "dense_vertices": (*OPTION, "0", "1", "1e9", "1e30"),
             "config": OPTION,
             "progress": (*OPTION, "True", "a class"),
             "newton_iterations": ("1",),

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import warp as wp
 
 from ..cage import Cage, CageEdit
-from ..geometry import as_callback, as_flag, as_instance, as_path
+from ..geometry import as_callback, as_instance, as_path
 from .cache.domain import Domain, domain_of
 from .cache.domain_state import DomainState
 from .cache.further_points import weights_of
@@ -26,12 +27,10 @@ from .options import WalkOptions, as_device
 from .placing import placed
 from .point_change import PointChange
 from .point_checks import (
-    checked_gradients,
     checked_indices,
     checked_keys,
-    checked_point_capacity,
     checked_points,
-    checked_vertex_capacity,
+    checked_room,
     require_uncovered,
     require_vertex_room,
 )
@@ -103,12 +102,7 @@ class HarmonicCoordinates:
         self._state = state = self.domain.now
         points = checked_points(points, state.cage.dimension)
         count = len(points)
-        room = {
-            "point_capacity": checked_point_capacity(point_capacity, count, walks),
-            "vertex_capacity": checked_vertex_capacity(vertex_capacity, state.cage),
-            "gradient_mask": checked_gradients(gradients, count),
-            "cuttable": as_flag(cuttable, "cuttable"),
-        }
+        room = checked_room(point_capacity, vertex_capacity, gradients, cuttable, state.cage, count, walks)
         as_callback(progress, "progress")
         placement = placed(state, PointChange(np.arange(count), points, point_keys), capacity=count)
         self._cache = WalkCache(state, options, **room)
@@ -258,12 +252,22 @@ class HarmonicCoordinates:
             run_again(cache, state, stats, journal)
         return stats
 
-    def snapshot(self) -> CoordinatesSnapshot:
+    def snapshot(self, *, of: HarmonicCoordinates | None = None) -> CoordinatesSnapshot:
         """Copy all that edits change, for :meth:`restore`; as many bytes as the cache and the weights.
 
+        Args:
+            of: Other coordinates, made as these were, whose walks and weights are to be restored here.
+
         Raises:
-            ValueError: There is no walk cache.
+            ValueError: There is no walk cache, or the other coordinates have other capacities or options.
         """
+        if of is not None:
+            as_instance(of, HarmonicCoordinates, "of")
+            mine, other = (one._cache_of("snapshot") for one in (self, of))
+            sizes = [(cache.point_capacity, cache.vertex_capacity) for cache in (mine, other)]
+            if sizes[0] != sizes[1] or of.walks != self.walks:
+                raise ValueError("snapshot: the other coordinates have other capacities, or more or fewer walks")
+            return replace(of.snapshot(), owner=mine)
         return CoordinatesSnapshot.of(self._cache_of("snapshot"), self._state, self.domain)
 
     def restore(self, snapshot: CoordinatesSnapshot, *, journal: Journal | None = None) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..cage import Cage, CageEdit, boundary_distances, check_inside
-from ..geometry import as_index, as_indices, as_integers, as_points, check_finite, shown
+from ..geometry import as_flag, as_index, as_indices, as_integers, as_points, check_finite, shown
 from .point_change import PointChange
 from .walks.query_points import INSIDE
 
@@ -101,6 +101,34 @@ def checked_indices(indices: np.ndarray, count: int | None = None) -> np.ndarray
     if (counts > 1).any():
         raise ValueError(f"indices: point {unique[counts > 1][0]} is given twice")
     return indices
+
+
+def checked_room(
+    point_capacity: int | None,
+    vertex_capacity: int | None,
+    gradients: bool | np.ndarray,
+    cuttable: bool,
+    cage: Cage,
+    count: int,
+    walks: int,
+) -> dict[str, object]:
+    """What a walk cache is made with, by name.
+
+    Args:
+        point_capacity: As passed to the coordinates.
+        vertex_capacity: Likewise.
+        gradients: Likewise.
+        cuttable: Likewise.
+        cage: The cage.
+        count: Number of points.
+        walks: Walks a point.
+    """
+    return {
+        "point_capacity": checked_point_capacity(point_capacity, count, walks),
+        "vertex_capacity": checked_vertex_capacity(vertex_capacity, cage),
+        "gradient_mask": checked_gradients(gradients, count),
+        "cuttable": as_flag(cuttable, "cuttable"),
+    }
 
 
 def checked_point_capacity(capacity: int | None, count: int, walks: int) -> int:
