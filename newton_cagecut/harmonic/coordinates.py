@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import warp as wp
@@ -252,12 +253,21 @@ class HarmonicCoordinates:
             run_again(cache, state, stats, journal)
         return stats
 
-    def snapshot(self) -> CoordinatesSnapshot:
+    def snapshot(self, *, of: HarmonicCoordinates | None = None) -> CoordinatesSnapshot:
         """Copy all that edits change, for :meth:`restore`; as many bytes as the cache and the weights.
 
+        Args:
+            of: Other coordinates, made as these were, whose walks and weights are to be restored here.
+
         Raises:
-            ValueError: There is no walk cache.
+            ValueError: There is no walk cache, or the other coordinates have other capacities or options.
         """
+        if of is not None:
+            mine, other = self._cache_of("snapshot"), of._cache_of("snapshot")
+            sizes = [(cache.point_capacity, cache.vertex_capacity) for cache in (mine, other)]
+            if sizes[0] != sizes[1] or of.walks != self.walks:
+                raise ValueError("snapshot: the other coordinates have other capacities, or more or fewer walks")
+            return replace(of.snapshot(), owner=mine)
         return CoordinatesSnapshot.of(self._cache_of("snapshot"), self._state, self.domain)
 
     def restore(self, snapshot: CoordinatesSnapshot, *, journal: Journal | None = None) -> None:

@@ -11,6 +11,7 @@ plane of the world, in plane strain (two dimensions of the paper's elasticity, s
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import newton
@@ -38,6 +39,9 @@ _ROWS = (
 )
 """Name, type, what it refers to, whose attribute it is, and default of each row; ``edit``: see ``edit_stamps``."""
 
+NO_TARGET = (math.inf, math.inf, math.inf)
+"""Where a vertex without a target is to go; not NaN, which Newton finds unequal to itself when builders are merged."""
+
 
 def register_custom_attributes(builder: newton.ModelBuilder) -> None:
     """Declare the rows that describe cage bodies; calling it again changes nothing."""
@@ -57,6 +61,16 @@ def register_custom_attributes(builder: newton.ModelBuilder) -> None:
                 default=default,
             )
         )
+    builder.add_custom_attribute(
+        newton.ModelBuilder.CustomAttribute(
+            name="target_q",
+            namespace="cagecut",
+            dtype=wp.vec3,
+            frequency=newton.Model.AttributeFrequency.PARTICLE,
+            assignment=newton.Model.AttributeAssignment.CONTROL,
+            default=wp.vec3(*NO_TARGET),
+        )
+    )
 
 
 def add_cage_body(
@@ -94,8 +108,8 @@ def add_cage_body(
         material: The elastic material; the default is soft rubber.
         xform: Pose of the rest frame in the world.
         velocity: Initial velocity [m/s]; fixed vertices do not travel with it.
-        fixed: Cage vertices that no step moves: their indices, or a mask over all; to move them, write their positions
-            to a state. A vertex that a cut makes on a face, among fixed ones, is fixed too.
+        fixed: Cage vertices that no step moves: their indices, or a mask over all; to move them, write targets
+            to ``control.cagecut.target_q``. A vertex that a cut makes on a face, among fixed ones, is fixed too.
         walks: Walks a point; 256 on a CPU and 2048 (the paper's) on CUDA by default.
         quadrature: Wanted number of quadrature points, by default 8 for each cage vertex and at least 300. 0 makes a
             body that is moved by its cage vertices alone, without elasticity.

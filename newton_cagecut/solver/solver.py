@@ -26,6 +26,9 @@ from .config import Config
 from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
+from .live.foreign_rows import ForeignRows
+from .live.live_solver import LiveSolver, refuse_gradients, refuse_state_gradients
+from .live.vertex_motion import targets_of
 from .plan import PlanEntry, plan_of, plan_of_scene
 from .progress_bars import fraction_bar
 from .viewing import SurfaceViewer
@@ -36,7 +39,7 @@ if TYPE_CHECKING:  # a scene without animations does not import USD
     from .scene_recorder import SceneRecorder
 
 
-class SolverCageCut(newton.solvers.SolverBase):
+class SolverCageCut(LiveSolver):
     """Simulates the cage bodies of a model and cuts them.
 
     Each body is a reduced elastic model whose shape functions are the harmonic coordinates of its cage, advanced by
@@ -67,6 +70,7 @@ class SolverCageCut(newton.solvers.SolverBase):
     ) -> None:
         self._config = Config.of(config, options)
         super().__init__(model)
+        refuse_gradients(model)
         rows = getattr(model, "cagecut", None)
         definitions = list(rows.definition) if rows is not None else []
         if not definitions:
@@ -88,6 +92,8 @@ class SolverCageCut(newton.solvers.SolverBase):
                 for row in range(count)
             ]
         self._bodies = tuple(CageBody(body) for body in self._simulated)
+        parts = [part for body in self._bodies for part in (body.vertices, body.surface_particles) if part is not None]
+        self._foreign = ForeignRows(model, parts, self._config.foreign)
         self._viewer = SurfaceViewer()
         self._recorder: SceneRecorder | None = None
         labels, systems = zip(*((body.label, body.system) for body in self._simulated), strict=True)
@@ -133,7 +139,7 @@ class SolverCageCut(newton.solvers.SolverBase):
         *,
         observables: newton.solvers.SolverBase.Observables | None = None,
     ) -> None:
-        """Advance all cage bodies by one step; rigid bodies are copied through.
+        """Advance all cage bodies by one step; what is not theirs is copied through, see ``Config.foreign``.
 
         A body whose rows of ``state_in`` missed an edit is left where it is there, and counted: in a replay of a
         captured graph nothing else can be done. Outside of a capture that raises, then or at the next call.
@@ -141,7 +147,8 @@ class SolverCageCut(newton.solvers.SolverBase):
         Args:
             state_in: State before the step.
             state_out: State after it; may be the same.
-            control: Not used.
+            control: Where fixed vertices are to go: rows of ``control.cagecut.target_q``, one a particle [m]; infinity,
+                which all are at first, keeps a vertex where it is. The model's own without a control.
             contacts: Contacts of Newton's collision pipeline, for bodies with a contact radius.
             dt: Time step [s].
             observables: Not supported beyond Newton's checks.
@@ -156,17 +163,16 @@ class SolverCageCut(newton.solvers.SolverBase):
             raise ValueError(f"SolverCageCut.step dt must be a positive number of seconds, got {dt}")
         self.validate_observables(observables, contacts)
         self._require_unreduced_contacts(contacts)
+        targets = targets_of(self.model, control)
+        refuse_state_gradients(state_in)
         self._stamps.compare(state_in)
         if not self.model.device.is_capturing:
             self._watch.warn()
         if state_in is not state_out:
-            for name in ("body_q", "body_qd", "joint_q", "joint_qd"):
-                source, target = getattr(state_in, name, None), getattr(state_out, name, None)
-                if source is not None and target is not None:
-                    wp.copy(target, source)
+            self._foreign.copy(state_in, state_out)
             wp.copy(state_edits(state_out), state_edits(state_in))
         for body in self._simulated:
-            body.step(state_in, state_out, contacts, seconds)
+            body.step(state_in, state_out, contacts, seconds, targets)
         self._watch.note()
 
     def warm_up(self, *, progress: bool | None = None) -> None:

@@ -87,6 +87,7 @@ class BodyDefinition:
         options: Further options of the harmonic coordinates.
         edit: Number of the edit that it is as of, 0 before the first; undoing one goes back to the number before.
         last_edit: Highest number that an edit has had.
+        uncut: What it was before its first cut; None if it was never cut.
     """
 
     label: str
@@ -104,3 +105,9 @@ class BodyDefinition:
     options: dict[str, object]
     edit: int = 0
     last_edit: int = 0
+    uncut: BodyDefinition | None = None
+
+    @property
+    def before_cuts(self) -> BodyDefinition:
+        """What it was before its first cut."""
+        return self.uncut or self
