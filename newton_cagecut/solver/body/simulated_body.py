@@ -219,8 +219,7 @@ class SimulatedBody:
             if self._surface_buffer is None:
                 self._surface_buffer = wp.zeros(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
             points = self._surface_buffer
-        inputs = [state.particle_q[self.vertices], self.surface_rows, points]
-        wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
+        self._embed(state.particle_q[self.vertices], points)
         sites = points[: self.surface.site_count]
         return sites if self.surface.point_site is None else self._seams.points_of(self.surface, sites)
 
@@ -228,8 +227,7 @@ class SimulatedBody:
         """Velocities of the surface's points [m/s], shape (point_count, 3), on the host."""
         self.require_current(state)
         sites = wp.empty(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
-        inputs = [state.particle_qd[self.vertices], self.surface_rows, sites]
-        wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
+        self._embed(state.particle_qd[self.vertices], sites)
         velocities, site = sites.numpy()[: self.surface.site_count], self.surface.point_site
         return velocities if site is None else velocities[site]
 
@@ -398,6 +396,10 @@ class SimulatedBody:
             progress=progress,
             **definition.options,
         )
+
+    def _embed(self, vertices: wp.array, points: wp.array) -> None:
+        inputs = [vertices, self.surface_rows, points]
+        wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
 
     def _make_system(self) -> ReducedSystem:
         return ReducedSystem(
