@@ -228,8 +228,10 @@ class SimulatedBody:
         """Velocities of the surface's points [m/s], shape (point_count,)."""
         self.require_current(state)
         velocities = wp.empty(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
-        self._embed(state.particle_qd[self.vertices], velocities, None)
-        return velocities[: len(self.surface.points)]
+        inputs = [state.particle_qd[self.vertices], self.surface_rows, velocities]
+        wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
+        sites = velocities[: self.surface.site_count]
+        return sites if self.surface.point_site is None else self._seams.points_of(self.surface, sites)
 
     def surface_triangles(self) -> wp.array:
         """Triangles of the surface, shape (triangle_count,) vec3i."""
