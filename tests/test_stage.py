@@ -34,8 +34,8 @@ def test_hand_written_stage_becomes_a_body():
     assert (scene.fps, scene.frame_count) == (24.0, 25)
     (track,) = scene.blades
     assert track.path == "/World/knife"
-    assert track.depth_at(12.0 / 24.0) == pytest.approx(1.0)
-    assert (track.depth_at(0.0), track.depth_at(9.0)) == (0.0, 2.0)
+    assert track.depth_at(12.0 / 24.0) == pytest.approx(0.25)
+    assert (track.depth_at(0.0), track.depth_at(9.0)) == (0.0, 0.5)
     body = cagecut.SolverCageCut(builder.finalize(device="cpu")).bodies[0]
     assert body.label == "World_jelly"
     assert body.material == cagecut.Material(

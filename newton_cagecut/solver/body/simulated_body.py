@@ -219,8 +219,7 @@ class SimulatedBody:
             if self._surface_buffer is None:
                 self._surface_buffer = wp.zeros(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
             points = self._surface_buffer
-        inputs = [state.particle_q[self.vertices], self.surface_rows, points]
-        wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
+        self._embed(state.particle_q[self.vertices], points)
         sites = points[: self.surface.site_count]
         return sites if self.surface.point_site is None else self._seams.points_of(self.surface, sites)
 
@@ -228,10 +227,8 @@ class SimulatedBody:
         """Velocities of the surface's points [m/s], shape (point_count,)."""
         self.require_current(state)
         velocities = wp.empty(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
-        inputs = [state.particle_qd[self.vertices], self.surface_rows, velocities]
-        wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
-        sites = velocities[: self.surface.site_count]
-        return sites if self.surface.point_site is None else self._seams.points_of(self.surface, sites)
+        self._embed(state.particle_qd[self.vertices], velocities)
+        return velocities[: len(self.surface.points)]
 
     def surface_triangles(self) -> wp.array:
         """Triangles of the surface, shape (triangle_count,) vec3i."""
@@ -398,6 +395,10 @@ class SimulatedBody:
             progress=progress,
             **definition.options,
         )
+
+    def _embed(self, vertices: wp.array, points: wp.array) -> None:
+        inputs = [vertices, self.surface_rows, points]
+        wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
 
     def _make_system(self) -> ReducedSystem:
         return ReducedSystem(
