@@ -16,7 +16,7 @@ import newton_cagecut as cagecut
 from newton_cagecut.__main__ import main
 from newton_cagecut.usd import validate_animation
 
-JELLY = Path(__file__).parent.parent / "assets" / "jelly_cut.usda"
+JELLY = Path(__file__).parent.parent / "assets" / "stages" / "jelly_cut.usda"
 
 
 def _stage() -> Usd.Stage:

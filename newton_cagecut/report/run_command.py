@@ -19,7 +19,7 @@ the animation.
 """
 EPILOG = """\
 example:
-  python -m newton_cagecut run assets/jelly_cut.usda -o cut.usda
+  python -m newton_cagecut run assets/stages/jelly_cut.usda -o cut.usda
 """
 _STEPS = 2
 """Steps of a frame."""
