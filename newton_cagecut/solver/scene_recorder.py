@@ -55,11 +55,11 @@ def _body_frame(body: SimulatedBody, state: newton.State) -> BodyFrame:
     has_uvs = surface.uvs is not None or surface.own_corner_uvs is not None
     return BodyFrame(
         name=body.label,
-        points=body.surface_points(state).numpy(),
+        points=body.surface_points(state).numpy().copy(),
         triangles=surface.triangles,
         triangle_cap=surface.triangle_cap,
         rest_points=surface.mesh.vertices,
-        velocities=body.surface_velocities(state).numpy(),
+        velocities=body.surface_velocities(state),
         uvs=None if body.is_plane and not has_uvs else surface.corner_uvs(body.cage.walls),
         has_skin_uvs=has_uvs,
         cage_points=state.particle_q[body.vertices].numpy()[: body.cage.vertex_count],

@@ -197,5 +197,5 @@ def check_volume(mesh: PolygonMesh) -> None:
     if volume <= 0.0:
         what = "area" if mesh.dimension == 2 else "volume"
         raise ValueError(
-            f"the cage is inside out: its {what} is {volume:.6g}; reverse all {mesh.face_count} faces (or repair=True)"
+            f"the cage is inside out: its {what} is {volume:.6g}; reverse all {mesh.face_count} faces, or repair=True"
         )

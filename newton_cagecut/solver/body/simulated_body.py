@@ -225,12 +225,13 @@ class SimulatedBody:
         sites = points[: self.surface.site_count]
         return sites if self.surface.point_site is None else self._seams.points_of(self.surface, sites)
 
-    def surface_velocities(self, state: newton.State) -> wp.array:
-        """Velocities of the surface's points [m/s], shape (point_count,)."""
+    def surface_velocities(self, state: newton.State) -> np.ndarray:
+        """Velocities of the surface's points [m/s], shape (point_count, 3), on the host."""
         self.require_current(state)
-        velocities = wp.empty(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
-        self._embed(state.particle_qd[self.vertices], velocities)
-        return velocities[: len(self.surface.points)]
+        sites = wp.empty(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
+        self._embed(state.particle_qd[self.vertices], sites)
+        velocities, site = sites.numpy()[: self.surface.site_count], self.surface.point_site
+        return velocities if site is None else velocities[site]
 
     def surface_triangles(self) -> wp.array:
         """Triangles of the surface, shape (triangle_count,) vec3i."""
