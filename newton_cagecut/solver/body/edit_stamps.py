@@ -62,7 +62,7 @@ class EditStamps:
         """Number of each body's present edit, shape (body_count,), int32."""
         self.is_current = wp.ones(len(labels), dtype=wp.int32, device=self.device)
         """Whether the state of the last step was of that edit, shape (body_count,), int32."""
-        self._labels = tuple(labels)
+        self.labels = self._labels = tuple(labels)
         self._missed = wp.zeros(len(labels), dtype=wp.int32, device=self.device)
         self._seen = wp.zeros(len(labels), dtype=wp.int32, device="cpu", pinned=self.device.is_cuda)
         self._seen_counts = self._seen.numpy()  # a view, of host memory on every device
