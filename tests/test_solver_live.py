@@ -297,3 +297,21 @@ def test_reset_checks_its_arguments():
         solver.reset(newton.ModelBuilder().finalize(device="cpu").state())
     with pytest.raises(TypeError, match="newton.ModelFlags"):
         solver.notify_model_changed("gravity")
+
+
+def test_labels_are_each_bodys_own():
+    """Replicated bodies are told apart by their worlds, prefixes count, and two of one name are refused."""
+    _, solver, states = _worlds(2)
+    assert [body.label for body in solver.bodies] == ["world_0/cage_body_0", "world_1/cage_body_0"]
+    assert solver.body("world_1/cage_body_0") is solver.bodies[1]
+    template, builder = newton.ModelBuilder(), newton.ModelBuilder()
+    for one in (template, builder):
+        cagecut.SolverCageCut.register_custom_attributes(one)
+    cagecut.add_cage_body(template, box_cage(), ball(), walks=4, quadrature=12)
+    builder.add_builder(template)
+    builder.add_builder(template, label_prefix="left")
+    labels = [body.label for body in cagecut.SolverCageCut(builder.finalize(device="cpu")).bodies]
+    assert labels == ["cage_body_0", "left/cage_body_0"]
+    builder.add_builder(template)
+    with pytest.raises(ValueError, match="two cage bodies have the label 'cage_body_0'"):
+        cagecut.SolverCageCut(builder.finalize(device="cpu"))

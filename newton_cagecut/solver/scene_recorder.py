@@ -54,7 +54,7 @@ def _body_frame(body: SimulatedBody, state: newton.State) -> BodyFrame:
     surface = body.surface
     has_uvs = surface.uvs is not None or surface.own_corner_uvs is not None
     return BodyFrame(
-        name=body.label,
+        name=body.label.replace("/", "_"),
         points=body.surface_points(state).numpy().copy(),
         triangles=surface.triangles,
         triangle_cap=surface.triangle_cap,

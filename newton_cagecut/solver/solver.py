@@ -15,6 +15,7 @@ import warp as wp
 
 from ..geometry import as_flag, as_instance, as_number, shown
 from ..section import Blade
+from .body.body_labels import body_labels
 from .body.body_pieces import BodyPiece
 from .body.cage_body import CageBody
 from .body.edit_stamps import EditStamps, state_edits
@@ -82,7 +83,7 @@ class SolverCageCut(LiveSolver):
                 "add_cage_body(builder, ...) before builder.finalize()"
             )
         count = len(definitions)
-        self._stamps = EditStamps(model, [definition.label for definition in definitions])
+        self._stamps = EditStamps(model, body_labels(model))
         with fraction_bar("weights", shown=progress) if not callable(progress) else nullcontext(progress) as report:
             self._simulated = [
                 SimulatedBody(

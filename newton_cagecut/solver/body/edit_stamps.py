@@ -65,7 +65,7 @@ class EditStamps:
         """Number of each body's present edit, shape (body_count,), int32."""
         self.is_current = wp.ones(len(labels), dtype=wp.int32, device=self.device)
         """Whether the state of the last step was of that edit, shape (body_count,), int32."""
-        self._labels = tuple(labels)
+        self.labels = self._labels = tuple(labels)
         self._particle_count = model.particle_count
         self._known: weakref.WeakKeyDictionary[newton.State, tuple] = weakref.WeakKeyDictionary()
         self._missed = wp.zeros(len(labels), dtype=wp.int32, device=self.device)

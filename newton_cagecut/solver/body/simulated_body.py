@@ -56,7 +56,7 @@ class SimulatedBody:
         definition = self.definition
         vertex_start = int(model.cagecut.vertex_start.numpy()[row])
         surface_start = int(model.cagecut.surface_start.numpy()[row])
-        self.label = definition.label
+        self.label = stamps.labels[row]
         self.capacity = definition.capacity
         self.surface: Surface = definition.surface
         self.vertices = slice(vertex_start, vertex_start + self.capacity.vertices)
