@@ -13,7 +13,18 @@ from functools import cached_property
 
 import numpy as np
 
-from ..geometry import PolygonMesh, as_length, as_loops, as_points, triangulate_faces, units, winding_numbers
+from ..geometry import (
+    PolygonMesh,
+    as_flag,
+    as_length,
+    as_loops,
+    as_number,
+    as_points,
+    check_finite,
+    triangulate_faces,
+    units,
+    winding_numbers,
+)
 from .checks import topology
 from .edits import extrusion, refinement
 from .edits.edit import CageEdit
@@ -46,12 +57,13 @@ class Cage:
         """
         positions = as_points(vertices, "vertices", rows="vertex_count", widths=(3, 2))
         face_start, face_vertex = as_loops(faces, "the cage")
-        if not (np.isfinite(tolerance) and 0.0 < tolerance < 0.1):
+        tolerance = as_number(tolerance, "tolerance", limits=(0.0, 0.1))
+        if not 0.0 < tolerance < 0.1:
             raise ValueError(f"tolerance must lie between 0 and 0.1, got {tolerance}")
         topology.check_loops(positions, face_start, face_vertex, simple=True)
-        self.tolerance = float(tolerance)
+        self.tolerance = tolerance
         self.diameter = float(np.linalg.norm(positions.max(axis=0) - positions.min(axis=0)))
-        if repair:
+        if as_flag(repair, "repair"):
             face_start, face_vertex = as_loops(
                 repaired(
                     positions,
@@ -257,8 +269,13 @@ class Cage:
 
         Returns:
             Winding numbers, shape (point_count, component_count).
+
+        Raises:
+            TypeError: If the points are not numbers.
+            ValueError: If they have another shape or are not finite.
         """
-        points = np.asarray(points, dtype=np.float64).reshape(-1, self.dimension)
+        points = as_points(points, "points", rows="point_count", widths=(self.dimension,))
+        check_finite(points, "points")
         group = self.face_component[self.simplex_face]
         return winding_numbers(points, self.vertices, self.simplices, group, self.component_count)
 
@@ -270,6 +287,10 @@ class Cage:
 
         Returns:
             True for the points inside, shape (point_count,).
+
+        Raises:
+            TypeError: If the points are not numbers.
+            ValueError: If they have another shape or are not finite.
         """
         return self.winding_numbers(points).sum(axis=1) > 0.5
 
@@ -281,6 +302,10 @@ class Cage:
 
         Returns:
             Piece of each point, -1 outside the cage, shape (point_count,).
+
+        Raises:
+            TypeError: If the points are not numbers.
+            ValueError: If they have another shape or are not finite.
         """
         number = self.winding_numbers(points)
         volume = np.where((number > 0.5) & self.mesh.component_outward, self.component_volumes, np.inf)

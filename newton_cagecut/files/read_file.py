@@ -6,13 +6,13 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
-from os import PathLike, fspath
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
 
 from ..cage import Cage
-from ..geometry import as_number, polygon_triangles
+from ..geometry import as_flag, as_number, as_path, polygon_triangles, shown
 from ..surface import Surface
 from ..usd import border_of, check_mesh, read_meshes, turn_up
 from ..usd import read_cage as read_usd_cage
@@ -63,7 +63,7 @@ def read_mesh(
         TypeError: An argument is of a wrong type.
         ValueError: An argument is wrong, the file cannot be read, or its mesh is none.
     """
-    path, meshes = _read(path, scale, up_axis, name)
+    weld, (path, meshes) = as_flag(weld, "weld"), _read(path, scale, up_axis, name)
     cages = [] if name is not None else _cages_of(meshes)
     mesh = joined([used_points(mesh) for mesh in meshes if mesh not in cages] if cages else meshes)
     if weld or path.suffix.lower() == ".stl":
@@ -123,9 +123,9 @@ def _read(
     path: str | PathLike, scale: float, up_axis: str | None, name: str | None, *, empty: bool = False
 ) -> tuple[Path, list[FileMesh]]:
     """Return the path and the checked meshes of a file in metres; none only where that may be and the file is USD."""
-    path, scale = Path(fspath(path)), _checked_scale(scale)
-    if up_axis not in (None, "Y", "Z"):
-        raise ValueError(f'up_axis must be "Y", "Z" or None, got {up_axis!r}')
+    path, scale = Path(as_path(path)), _checked_scale(scale)
+    if not (up_axis is None or (isinstance(up_axis, str) and up_axis in ("Y", "Z"))):
+        raise ValueError(f'up_axis must be "Y", "Z" or None, got {shown(up_axis)}')
     if name is not None and not isinstance(name, str):
         raise TypeError(f"name must be the name of a mesh, got {name!r}")
     suffix = path.suffix.lower()

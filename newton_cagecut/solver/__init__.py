@@ -7,7 +7,7 @@ import newton
 
 from .body.body_pieces import BodyPiece
 from .body.cage_body import CageBody
-from .body.definition import Capacity
+from .body.capacity import Capacity
 from .builder import add_cage_body
 from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot

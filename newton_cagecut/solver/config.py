@@ -8,8 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass, fields, replace
 
 from ..elastic import INTEGRATORS, SolveLimits
-from ..geometry import as_index, as_number
+from ..geometry import as_choice, as_index, as_number
 from .live.foreign_rows import FOREIGN_ROWS
+
+_MOST_ITERATIONS = 1 << 30
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,12 +47,8 @@ class Config:
     ratios from 0.45 on, whose solves without a factor miss the tolerance."""
 
     def __post_init__(self) -> None:
-        if self.foreign not in FOREIGN_ROWS:
-            names = ", ".join(map(repr, FOREIGN_ROWS))
-            raise ValueError(f"SolverCageCut foreign must be one of {names}, got {self.foreign!r}")
-        if self.integrator not in INTEGRATORS:
-            names = ", ".join(map(repr, INTEGRATORS))
-            raise ValueError(f"SolverCageCut integrator must be one of {names}, got {self.integrator!r}")
+        as_choice(self.foreign, tuple(FOREIGN_ROWS), "SolverCageCut foreign")
+        as_choice(self.integrator, tuple(INTEGRATORS), "SolverCageCut integrator")
         iterations = as_index(self.newton_iterations, "SolverCageCut newton_iterations")
         object.__setattr__(self, "newton_iterations", iterations)
         if iterations < 1:
@@ -61,6 +59,9 @@ class Config:
         object.__setattr__(self, "tolerance", as_number(self.tolerance, "SolverCageCut tolerance"))
         if self.max_iterations < 1:
             raise ValueError(f"SolverCageCut max_iterations must be at least 1, got {self.max_iterations}")
+        if max(iterations, self.max_iterations) > _MOST_ITERATIONS:
+            name = "max_iterations" if self.max_iterations > _MOST_ITERATIONS else "newton_iterations"
+            raise ValueError(f"SolverCageCut {name} must be at most {_MOST_ITERATIONS}, got {getattr(self, name)}")
         if self.dense_vertices is not None:
             object.__setattr__(self, "dense_vertices", as_index(self.dense_vertices, "SolverCageCut dense_vertices"))
             if self.dense_vertices < 0:

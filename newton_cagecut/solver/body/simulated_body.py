@@ -62,7 +62,9 @@ class SimulatedBody:
         self.vertices = slice(vertex_start, vertex_start + self.capacity.vertices)
         self.surface_particles = slice(surface_start, surface_start + self.capacity.surface_points)
         self.has_contact = surface_start >= 0
-        self._frame = RestFrame.of_particles(definition.cage.vertices, model.particle_q.numpy()[vertex_start:])
+        self._frame = RestFrame.of_particles(
+            definition.cage.vertices, model.particle_q.numpy()[vertex_start:], what=self.label
+        )
         self.quadrature = self._sample(definition)
         self.quadrature_count = len(self.quadrature.points) if self.quadrature else 0
         self.coordinates = self._bake(definition, self.quadrature, progress)
@@ -178,7 +180,7 @@ class SimulatedBody:
         """The body's particles: the cage's vertices and, with contact, the surface's points."""
         return [self.vertices, self.surface_particles] if self.has_contact else [self.vertices]
 
-    def require_current(self, state: newton.State, what: str = "the state") -> None:
+    def require_current(self, state: newton.State, what: str = "state") -> None:
         """Refuse a state that missed an edit of the body; reads it on the host.
 
         Args:
