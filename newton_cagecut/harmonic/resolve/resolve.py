@@ -8,8 +8,8 @@ regressed on the harmonic polynomials up to degree 3 over the point's landings, 
 linear precision hold to rounding, and the variance falls (design, section 3). The linear polynomials are taken at
 sum_j phi_j v_j, which for a nested walk is the point of the edge where it ended: the identities then hold for what
 the weights really are. On a wall all walks of a point end in its face; what few of them leave is spread over the
-face's corners. The gradient is that of the fit plus the boundary integral estimator of Sawhney and Crane 2020
-(paper, section 6.1) applied to what the fit leaves over.
+corners that the point sees. The gradient is that of the fit plus the boundary integral estimator of Sawhney and Crane
+2020 (paper, section 6.1) applied to what the fit leaves over.
 
 The sums run over the walks in their order, so the result does not depend on which walks were walked again.
 """
@@ -27,7 +27,8 @@ from ..walks.landing import landing_type, point_functions
 from ..walks.query_points import QueryPoints
 from ..walks.random import make_direction
 from ..walks.records import WalkRecords
-from .affine import make_affine_correction, make_face_correction
+from .affine import make_affine_correction
+from .face_correction import make_face_correction
 from .point_weights import PointWeights
 from .polynomials import make_polynomials
 from .regression import FAR_COUNT, make_regression
