@@ -75,6 +75,16 @@ def boxes_at_a_face() -> Mesh:
     return joined(box_mesh((0.2, 0.2, 0.2), (0.45, 0.8, 0.8)), box_mesh((0.45, 0.2, 0.2)))
 
 
+def voxels() -> Mesh:
+    """Cubes of which two touch along an edge around both of whose ends the solid hangs together."""
+    full = np.ones((2, 2, 3), dtype=bool)
+    full[0, 1, 1] = full[1, 0, 1] = False
+    corners = [(0.2 + 0.2 * np.array(cell), 0.4 + 0.2 * np.array(cell)) for cell in np.argwhere(full)]
+    points, triangles = joined(*(box_mesh(low, high) for low, high in corners))
+    _, number, count = np.unique(np.sort(triangles, axis=1), axis=0, return_inverse=True, return_counts=True)
+    return points, triangles[count[number.reshape(-1)] == 1]
+
+
 def box_with_doubled_triangles() -> Mesh:
     """A box of which one triangle is there twice, another also the other way around, and one has no width."""
     points, triangles = box_mesh()
@@ -149,6 +159,7 @@ CLOSED = {
     "boxes_at_a_face": (boxes_at_a_face, 2),
     "overlapping_spheres": (overlapping_spheres, 2),
     "sphere_with_turned_triangles": (sphere_with_turned_triangles, 1),
+    "voxels": (voxels, 1),
     "crossed_tube": (crossed_tube, 1),
 }
 """Meshes that become closed sheets, and how many."""

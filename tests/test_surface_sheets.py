@@ -2,14 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Meshes of any kind become sheets, which are cut as what they are."""
 
+import newton
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
+import newton_cagecut as cagecut
 from cage_shapes import box
 from newton_cagecut.cage import Cut
 from newton_cagecut.section import Blade
 from newton_cagecut.surface import Surface, SurfaceCut
-from odd_meshes import CLOSED, PARTLY_OPEN
+from odd_meshes import CLOSED, PARTLY_OPEN, box_mesh, box_with_doubled_triangles, hemisphere, joined, sphere_mesh
 from surface_shapes import check_closed
 
 BLADES = (
@@ -89,3 +93,88 @@ def test_open_sheets_get_no_caps(name):
         assert closed_volume(now)[0] == pytest.approx(volume)
     assert (now.triangle_cap >= 0).any() == (volume > 0.0)
     assert now.mesh.component_count > count
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_any_triangles_become_sheets(seed):
+    """Random triangles over few points, boxes of a lattice, turned and doubled at random: sheets, before and after."""
+    rng = np.random.default_rng(seed)
+    if rng.integers(2):
+        points = rng.uniform(0.2, 0.8, (rng.integers(4, 9), 3))
+        triangles = rng.integers(0, len(points), (rng.integers(1, 25), 3))
+        if not ((triangles != np.roll(triangles, 1, axis=1)).all(axis=1)).any():
+            triangles[0] = [0, 1, 2]
+    else:
+        cells = rng.integers(0, 2, (rng.integers(2, 7), 3))
+        points, triangles = joined(*(box_mesh(0.2 + 0.3 * c, 0.5 + 0.3 * c) for c in cells))
+        triangles = triangles[rng.permutation(len(triangles))]
+        turned = rng.random(len(triangles)) < rng.choice([0.0, 0.1])
+        triangles[turned] = triangles[turned, ::-1]
+    surface = Surface(points, triangles)
+    surface.refuse_branches()
+    volume, count = closed_volume(surface)
+    area = skin_area(surface)
+    for now in cut_through(surface, BLADES[:2], steps=3):
+        now.refuse_branches()
+        assert skin_area(now) == pytest.approx(area)
+        assert closed_volume(now)[0] == pytest.approx(volume, abs=1e-12)
+        assert closed_volume(now)[1] >= count
+
+
+def test_what_is_given_of_triangles_goes_along():
+    """Arrays of points, corners and triangles are those of the triangles that are left, turned with them."""
+    points, triangles = box_with_doubled_triangles()
+    triangles[5] = triangles[5, ::-1]
+    number = np.arange(len(triangles))
+    data = {"corner": ("corner", 10 * number[:, None] + triangles), "triangle": number, "point": np.arange(8.0)}
+    surface = Surface(points, triangles, uvs=points[triangles][..., :2], data=data)
+    kept = surface.data["triangle"]
+    assert set(number) - set(kept) == {12, 14}
+    np.testing.assert_array_equal(np.sort(surface.data["corner"] % 10), np.sort(triangles[kept]))
+    np.testing.assert_array_equal(surface.own_corner_uvs, surface.points[surface.triangles][..., :2])
+    np.testing.assert_array_equal(surface.data["corner"] // 10, np.repeat(kept[:, None], 3, axis=1))
+    np.testing.assert_array_equal(surface.points[:8], points)
+    np.testing.assert_array_equal(points[surface.data["point"].astype(int)], surface.points)
+
+
+def test_notes_name_what_was_done():
+    """Each repair is told with the numbers of the triangles and edges that were given."""
+    points, triangles = box_with_doubled_triangles()
+    triangles[5] = triangles[5, ::-1]
+    notes = " ".join(Surface(points, triangles).notes)
+    for text in ("triangle 14 uses a point twice", "triangle 12 is there twice", "triangle 5 ran the other way"):
+        assert text in notes
+    assert "3 edges have three triangles or more" in notes
+    assert Surface(*sphere_mesh()).notes == ()
+    open_ones = Surface(*hemisphere()).notes
+    assert len(open_ones) == 1
+    assert "have one triangle: where a cut meets such edges it makes no caps" in open_ones[0]
+
+
+@pytest.mark.parametrize("ends", ["elsewhere", "apart"])
+def test_cracks_are_counted(ends):
+    """Edges that lie along others without ending where they end, or next to them, are cracks, which stay open."""
+    points, triangles = box_mesh()
+    top = np.flatnonzero((points[triangles][:, :, 2] == 0.8).all(axis=1))
+    if ends == "elsewhere":
+        points = np.concatenate([points, [[0.5, 0.2, 0.8]]])  # halfway along one edge of the lid, on the lid alone
+        lid = [[4, 8, 6], [8, 7, 6], [8, 5, 7]]
+    else:
+        points = np.concatenate([points, points[4:] + [1e-4, 0.0, 1e-4]])
+        lid = [[8, 9, 10], [9, 11, 10]]
+    surface = Surface(points, np.concatenate([np.delete(triangles, top, axis=0), lid]))
+    assert not surface.closed
+    crack = surface.notes[-1]
+    assert f"{3 if ends == 'elsewhere' else 8} edges, the first" in crack
+    assert "a crack, which stays open" in crack
+    assert Surface(points, surface.triangles, weld=2e-4).closed == (ends == "apart")
+
+
+def test_bodies_warn_and_refuse_before_walks():
+    """A body that can be cut says what was done and what stays open; one that cannot be cut says nothing."""
+    builder = newton.ModelBuilder()
+    cagecut.SolverCageCut.register_custom_attributes(builder)
+    with pytest.warns(UserWarning, match="edges, the first .* have one triangle: where a cut meets"):
+        cagecut.add_cage_body(builder, box(), hemisphere(), walks=4, quadrature=10)
+    cagecut.add_cage_body(builder, box(), hemisphere(), walks=4, quadrature=10, cuttable=False)

@@ -34,12 +34,15 @@ class Fans:
     patch: np.ndarray
     """Patch of each one's triangle, shape (row_count,)."""
 
-    def pairs(self, area: np.ndarray, dangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def pairs(
+        self, area: np.ndarray, dangles: np.ndarray, across: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Pairs of half-edges that belong together.
 
         Args:
             area: Area of each patch, of triangles that hang together by edges of two, shape (patch_count,) [m^2].
             dangles: Whether a patch has an open edge, shape (patch_count,).
+            across: Whether solids hang together at an edge instead, shape (edge_count,); nowhere by default.
         """
         kept = np.flatnonzero(~self._left_out(area, dangles)[self.patch])
         balance = np.bincount(self.edge[kept], weights=np.where(self.forward[kept], 1.0, -1.0), minlength=self.count)
@@ -48,10 +51,11 @@ class Fans:
             return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
         kept = kept[np.argsort(self.edge[kept], kind="stable")]
         angle = self._angles(kept)
+        ends = self.forward[kept] if across is None else self.forward[kept] ^ across[self.edge[kept]]
         starts = np.flatnonzero(np.diff(self.edge[kept], prepend=-1))
         pairs = []
-        for rows, angles in zip(np.split(kept, starts[1:]), np.split(angle, starts[1:])):
-            pairs += [(rows[i], rows[j]) for i, j in _match_around(angles, self.forward[rows])]
+        for rows, *around in zip(*(np.split(values, starts[1:]) for values in (kept, angle, ends)), strict=True):
+            pairs += [(rows[i], rows[j]) for i, j in _match_around(*around)]
         one, other = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
         return self.half_edge[one], self.half_edge[other]
 

@@ -14,6 +14,18 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 
+def connected_parts(count: int, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Number of the connected part of each node, shape (count,).
+
+    Args:
+        count: Number of nodes.
+        one: A node of each edge, shape (edge_count,).
+        other: The other node of each, shape (edge_count,).
+    """
+    graph = coo_array((np.ones(len(one), dtype=bool), (one, other)), shape=(count, count))
+    return connected_components(graph, directed=False)[1]
+
+
 def find_turned(count: int, one: np.ndarray, other: np.ndarray, alike: np.ndarray) -> np.ndarray:
     """Triangles to turn, the fewer of each connected part, as a mask, shape (count,).
 
@@ -26,8 +38,8 @@ def find_turned(count: int, one: np.ndarray, other: np.ndarray, alike: np.ndarra
     if not alike.any():
         return np.zeros(count, dtype=bool)
     forth, back = np.where(alike, other + count, other), np.where(alike, other, other + count)
-    label = _parts(2 * count, np.concatenate([one, one + count]), np.concatenate([forth, back]))
-    part = _parts(count, one, other)
+    label = connected_parts(2 * count, np.concatenate([one, one + count]), np.concatenate([forth, back]))
+    part = connected_parts(count, one, other)
     first = np.unique(part, return_index=True)[1]
     turned = label[:count] != label[first][part]
     one_sided = label[first] == label[first + count]
@@ -35,12 +47,6 @@ def find_turned(count: int, one: np.ndarray, other: np.ndarray, alike: np.ndarra
         _follow_trees(turned, first[one_sided], one, other, alike)
     size, minority = np.bincount(part), np.bincount(part, weights=turned)
     return turned ^ (2.0 * minority > size)[part]
-
-
-def _parts(count: int, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Number of the connected part of each node, shape (count,)."""
-    graph = coo_array((np.ones(len(one), dtype=bool), (one, other)), shape=(count, count))
-    return connected_components(graph, directed=False)[1]
 
 
 def _follow_trees(turned: np.ndarray, roots: np.ndarray, one: np.ndarray, other: np.ndarray, alike: np.ndarray) -> None:

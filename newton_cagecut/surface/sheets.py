@@ -12,12 +12,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from ..geometry import PolygonMesh
 from .fans import Fans
-from .orientation import find_turned
+from .orientation import connected_parts, find_turned
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,12 +28,6 @@ class Sheets:
     """Number of the fan around its point that each corner is of, shape (triangle_count, 3)."""
     branches: np.ndarray
     """Edges that three triangles or more had, as pairs of points, shape (branch_count, 2)."""
-
-
-def is_manifold(mesh: PolygonMesh) -> bool:
-    """Whether no edge has more than two triangles, and none two that run along it alike."""
-    _, size = np.unique(mesh.edge_key, return_counts=True)
-    return bool(size.max(initial=0) <= 2) and int(np.count_nonzero(size == 2)) * 2 == np.count_nonzero(mesh.twin >= 0)
 
 
 def repeated(triangles: np.ndarray) -> np.ndarray:
@@ -69,15 +61,40 @@ class _Finder:
         self.one, self.other = two[np.argsort(self.number[two], kind="stable")].reshape(-1, 2).T
 
     def sheets(self) -> Sheets:
-        """Put them together."""
-        one, other = np.concatenate([self._whole_pairs, self._fan_pairs], axis=1)
-        corners = 3 * self.mesh.face_count
-        low, high = self._corners
-        start, end = np.concatenate([low[one], high[one]]), np.concatenate([low[other], high[other]])
-        graph = coo_array((np.ones(len(start), dtype=bool), (start, end)), shape=(corners, corners))
-        fan = connected_components(graph, directed=False)[1].reshape(-1, 3)
+        """Put them together.
+
+        Solids that touch along an edge are two there, unless they hang together around both of its ends.
+        """
+        if self._fans is None:
+            fan = self._fan_of_corners(self._whole_pairs)
+        else:
+            fan, pairs = self._with_fans(None)
+            again = self._meets_itself(fan, pairs)
+            if again.any():
+                fan, _ = self._with_fans(again)
         key = self.key[np.unique(self.number[self.size > 2])]
-        return Sheets(self.turned, fan, np.stack(np.divmod(key, self.mesh.vertex_count), axis=1))
+        return Sheets(self.turned, fan.reshape(-1, 3), np.stack(np.divmod(key, self.mesh.vertex_count), axis=1))
+
+    def _with_fans(self, across: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+        """Number of the fan of each corner, and the pairs of edges of more than two triangles, shape (2, count)."""
+        pairs = np.stack(self._fans.pairs(*self._patches, across))
+        return self._fan_of_corners(np.concatenate([self._whole_pairs, pairs], axis=1)), pairs
+
+    def _fan_of_corners(self, pairs: np.ndarray) -> np.ndarray:
+        """Number of the fan of each corner, shape (half_edge_count,)."""
+        (one, other), (low, high) = pairs, self._corners
+        return connected_parts(
+            len(low), np.concatenate([low[one], high[one]]), np.concatenate([low[other], high[other]])
+        )
+
+    def _meets_itself(self, fan: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+        """Whether several pairs of an edge have both ends in common, shape (edge_count,)."""
+        low, high = (fan[corner[pairs[0]]] for corner in self._corners)
+        edge = self._fans.edge[np.searchsorted(self._fans.half_edge, pairs[0])]
+        cells, count = np.unique(np.stack([edge, low, high]), axis=1, return_counts=True)
+        again = np.zeros(self._fans.count, dtype=bool)
+        again[cells[0, count > 1]] = True
+        return again
 
     @cached_property
     def turned(self) -> np.ndarray:
@@ -97,30 +114,35 @@ class _Finder:
         opposite = self.forward[self.one] != self.forward[self.other]
         return np.stack([self.one[opposite], self.other[opposite]])
 
-    @property
-    def _fan_pairs(self) -> np.ndarray:
-        """Half-edges that belong together of edges of more triangles, shape (2, pair_count)."""
-        mesh = self.mesh
+    @cached_property
+    def _patch(self) -> np.ndarray:
+        """Patch of each triangle, of those that hang together by edges of two, shape (triangle_count,)."""
+        return connected_parts(self.mesh.face_count, *self.mesh.face[self._whole_pairs])
+
+    @cached_property
+    def _patches(self) -> tuple[np.ndarray, np.ndarray]:
+        """Area of each patch, and whether it has an open edge, shapes (patch_count,)."""
+        area = np.bincount(self._patch, weights=np.linalg.norm(self.mesh.face_area_vector, axis=1))
+        dangles = np.zeros(len(area), dtype=bool)
+        dangles[self._patch[self.mesh.face[self.size == 1]]] = True
+        return area, dangles
+
+    @cached_property
+    def _fans(self) -> Fans | None:
+        """Edges of three triangles or more; None without any."""
+        mesh, (low, high) = self.mesh, self._corners
         rows = np.flatnonzero(self.size > 2)
         if not len(rows):
-            return np.zeros((2, 0), dtype=np.int64)
-        one, other = mesh.face[self._whole_pairs]
-        graph = coo_array((np.ones(len(one), dtype=bool), (one, other)), shape=(mesh.face_count, mesh.face_count))
-        count, patch = connected_components(graph, directed=False)
-        dangles = np.zeros(count, dtype=bool)
-        dangles[patch[mesh.face[self.size == 1]]] = True
-        area = np.bincount(patch, weights=np.linalg.norm(mesh.face_area_vector, axis=1), minlength=count)
-        low, high = self._corners
-        fans = Fans(
+            return None
+        return Fans(
             half_edge=rows,
             edge=np.unique(self.number[rows], return_inverse=True)[1].reshape(-1),
             forward=self.forward[rows],
             low=mesh.vertices[mesh.face_vertex[low[rows]]],
             high=mesh.vertices[mesh.face_vertex[high[rows]]],
             apex=mesh.vertices[mesh.face_vertex[mesh.next[mesh.next[rows]]]],
-            patch=patch[mesh.face[rows]],
+            patch=self._patch[mesh.face[rows]],
         )
-        return np.stack(fans.pairs(area, dangles))
 
     @cached_property
     def _corners(self) -> tuple[np.ndarray, np.ndarray]:

@@ -285,8 +285,8 @@ class Surface:
             a, b = divmod(int(key[bad[0]]), mesh.vertex_count)
             triangles = mesh.face[order[first[bad[0]] : first[bad[0]] + count[bad[0]]]].tolist()
             raise ValueError(
-                f"the surface cannot be cut: edge ({a}, {b}) joins triangles {triangles}, which is not a manifold with "
-                f"one orientation ({len(bad)} such edges); give each sheet points of its own and one orientation"
+                f"the surface cannot be cut: edge ({a}, {b}) joins triangles {triangles}, which touch along it and "
+                f"hang together around both of its ends ({len(bad)} such edges); divide the edge in two of them"
             )
 
     @property
