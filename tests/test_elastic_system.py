@@ -63,7 +63,7 @@ def test_rest_stays_at_rest_to_the_bit(dimension, model):
 def test_free_fall_is_exact(dimension):
     """A free body falls rigidly along the parabola.
 
-    A float32 position, 5 m down, is rounded by 2e-7 m: its vertices then swing, at some hundred radians a second, undamped.
+    A float32 position, 5 m down, is rounded by 2e-7 m: vertices then swing, undamped, at some hundred radians a second.
     """
     body = Body(dimension, cells=(1, 2, 2), points=3, young=1e5)
     body.run(60, body.gravity)
