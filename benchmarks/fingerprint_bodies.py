@@ -140,7 +140,7 @@ def dropped(record: Record, dimension: int) -> None:
             frames.append(scene.frame())
     with TemporaryDirectory() as folder:
         path = Path(folder) / "body.usda"
-        with AnimationWriter(path) as writer:
+        with AnimationWriter(path, normals=True, separate_caps=False) as writer:
             writer.add_ground_plane()
             for number, frame in enumerate(frames):
                 writer.write_frame(number, frame)

@@ -58,7 +58,7 @@ class Example(CutScene):
         )
         hx, hy, hz = BLOCK_HALF
         builder.add_shape_box(-1, xform=wp.transform(BLOCK_CENTER), hx=hx, hy=hy, hz=hz)
-        self.static_meshes = (StaticMesh.of("block", newton.Mesh.create_box(hx, hy, hz), BLOCK_CENTER),)
+        self.static_meshes = (StaticMesh.of(newton.Mesh.create_box(hx, hy, hz), BLOCK_CENTER),)
 
     def cuts(self) -> tuple[PlannedCut, ...]:
         return CUTS

@@ -23,7 +23,7 @@ ASSETS = Path(__file__).parent.parent / "assets"
 HEIGHT = 0.85  # of the middle above the ground [m]
 UPRIGHT = wp.quat_from_axis_angle(wp.vec3(1.0, 0.0, 0.0), 0.5 * np.pi)  # the plane's y axis points up
 HANDS = (10, 20)  # cage vertices that are held
-PINS = {"left_pin": (-0.468, 0.0, HEIGHT + 0.263), "right_pin": (0.468, 0.0, HEIGHT + 0.263)}  # [m], only to look at
+PINS = ((-0.468, 0.0, HEIGHT + 0.263), (0.468, 0.0, HEIGHT + 0.263))  # [m], only to look at
 PIN_RADIUS, PIN_HALF = 0.016, 0.03  # [m]
 FALL_FRAMES = 20  # after which a piece that has come off is down
 CAGE, ICING = read_cage(ASSETS / "gingerbread_cage.usda"), icing()
@@ -67,7 +67,7 @@ class Example(CutScene):
             walks=self.walks,
             label="gingerbread",
         )
-        for name, place in PINS.items():
+        for place in PINS:
             builder.add_shape_cylinder(
                 -1,
                 xform=wp.transform(place, UPRIGHT),
@@ -76,7 +76,7 @@ class Example(CutScene):
                 cfg=newton.ModelBuilder.ShapeConfig(has_particle_collision=False),
             )
             pin = newton.Mesh.create_cylinder(PIN_RADIUS, PIN_HALF, up_axis=newton.Axis.Y)
-            self.static_meshes += (StaticMesh.of(name, pin, place),)
+            self.static_meshes += (StaticMesh.of(pin, place),)
 
     def cuts(self) -> tuple[PlannedCut, ...]:
         return CUTS

@@ -14,7 +14,7 @@ import newton
 import numpy as np
 
 from examples.picture import Mesh, render_png
-from newton_cagecut.usd import AnimationWriter, BodyFrame, validate_animation
+from newton_cagecut.usd import AnimationWriter, BodyFrame, SceneFrame, validate_animation
 
 if TYPE_CHECKING:
     from examples.scene import CutScene
@@ -27,25 +27,22 @@ class StaticMesh(NamedTuple):
     """A part of a scene that does not move.
 
     Args:
-        name: Name of its USD prim.
         points: Vertices [m], shape (n, 3).
         triangles: Triangles, shape (m, 3).
     """
 
-    name: str
     points: np.ndarray
     triangles: np.ndarray
 
     @staticmethod
-    def of(name: str, mesh: newton.Mesh, place: Sequence[float]) -> StaticMesh:
+    def of(mesh: newton.Mesh, place: Sequence[float]) -> StaticMesh:
         """Return a mesh of Newton's at a place.
 
         Args:
-            name: Name of its USD prim.
             mesh: The mesh.
             place: Where its origin is [m].
         """
-        return StaticMesh(name, np.asarray(mesh.vertices) + place, np.asarray(mesh.indices).reshape(-1, 3))
+        return StaticMesh(np.asarray(mesh.vertices) + place, np.asarray(mesh.indices).reshape(-1, 3))
 
 
 class Recording:
@@ -69,9 +66,7 @@ class Recording:
         self._drawn = False
         self._writer = AnimationWriter(usd, fps=scene.fps) if usd else None
         if self._writer is not None:
-            self._writer.add_ground_plane()
-            for mesh in scene.static_meshes:
-                self._writer.add_static_mesh(mesh.name, mesh.points, mesh.triangles, mesh_color=STATIC_COLOR)
+            self._writer.set_camera(scene.camera.eye, scene.camera.target)
 
     def add_frame(self, frame: int) -> None:
         """Record the scene as it is.
@@ -80,7 +75,7 @@ class Recording:
             frame: Number of the frame.
         """
         if self._writer is not None:
-            self._writer.write_frame(frame, *self._bodies())
+            self._writer.write_frame(frame, self, self._scene.state_0)
         if self._picture is not None and frame == self._picture_frame:
             self._draw()
 
@@ -95,29 +90,22 @@ class Recording:
         verdict = "valid at every sample" if not problems else f"{len(problems)} problems, the first: {problems[0]}"
         print(f"{self._writer.path}: {_megabytes(self._writer.path)}, {verdict}")
 
-    def _bodies(self) -> list[BodyFrame]:
+    def scene_frame(self, state: newton.State) -> SceneFrame:
+        """Return the scene in a state, with paint as bodies of their own.
+
+        Args:
+            state: The state.
+        """
         scene = self._scene
+        whole = scene.solver.scene_frame(state)
         frames = []
-        for body in scene.solver.bodies:
-            points, triangles = scene.solver.surface(scene.state_0, body.label)
-            paint = scene.painted(body)
-            frame = BodyFrame(
-                name=body.label,
-                points=points,
-                triangles=triangles[~paint],
-                triangle_cap=body.surface.triangle_cap[~paint],
-                rest_points=body.surface.mesh.vertices,
-                cage_points=scene.state_0.particle_q[body.vertices].numpy()[: body.cage.vertex_count],
-                cage_faces=body.cage.faces,
-                skin_color=scene.skin_color,
-                cap_color=scene.cap_color,
-            )
-            frames.append(frame)
+        for body, frame in zip(scene.solver.bodies, whole.bodies):
+            frame, paint = replace(frame, skin_color=scene.skin_color, cap_color=scene.cap_color), scene.painted(body)
+            frames.append(_part(frame, ~paint))
             if paint.any():
                 painted = {"name": f"{body.label}_paint", "skin_color": scene.paint_color, "cage_points": None}
-                painted |= {"triangles": triangles[paint], "triangle_cap": body.surface.triangle_cap[paint]}
-                frames.append(replace(frame, **painted))
-        return frames
+                frames.append(replace(_part(frame, paint), **painted))
+        return replace(whole, bodies=tuple(frames))
 
     def _draw(self) -> None:
         scene = self._scene
@@ -133,6 +121,12 @@ class Recording:
         render_png(self._picture, meshes, scene.camera, PICTURE_SIZE, ground=0.0, ray_count=6)
         self._drawn = True
         print(f"{self._picture}: {_megabytes(self._picture)}, frame {scene.frame}")
+
+
+def _part(frame: BodyFrame, triangles: np.ndarray) -> BodyFrame:
+    """Return a body with some of its triangles, given as a mask."""
+    uvs = None if frame.uvs is None else frame.uvs[triangles]
+    return replace(frame, triangles=frame.triangles[triangles], triangle_cap=frame.triangle_cap[triangles], uvs=uvs)
 
 
 def _megabytes(path: str | os.PathLike) -> str:

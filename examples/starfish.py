@@ -59,7 +59,7 @@ class Example(CutScene):
         half, place = 0.5 * STAND_HEIGHT, (0.0, 0.0, 0.5 * STAND_HEIGHT)
         builder.add_shape_cylinder(-1, xform=wp.transform(place), radius=STAND_RADIUS, half_height=half)
         stand = newton.Mesh.create_cylinder(STAND_RADIUS, half, up_axis=newton.Axis.Z, segments=64)
-        self.static_meshes = (StaticMesh.of("stand", stand, place),)
+        self.static_meshes = (StaticMesh.of(stand, place),)
 
     def cuts(self) -> tuple[PlannedCut, ...]:
         return CUTS

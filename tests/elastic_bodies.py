@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import warp as wp
 
-from newton_cagecut.elastic import Material, ReducedSystem
+from newton_cagecut.elastic import Material, PointForces, ReducedSystem
 
 DT = 1.0 / 60.0
 SIZE = np.array([0.2, 0.3, 0.5])
@@ -88,10 +88,12 @@ class Body:
                 target.assign(padded(values, target.shape[0] - self.count))
         return self
 
-    def run(self, steps, gravity=STILL, dt=DT, **options):
+    def run(self, steps, gravity=STILL, dt=DT, spring=None, **options):
         """Take steps in place."""
         gravity = as_array([gravity], wp.vec3)
         for _ in range(steps):
+            if spring is not None:
+                options["points"] = spring.aim()
             self.system.step(self.x, self.v, self.x, self.v, dt, gravity=gravity, **options)
         return self
 
@@ -128,44 +130,22 @@ class Body:
         return sum(self.system.energy(self.x, self.v))
 
 
-@wp.kernel(enable_backward=False)
-def pull_residual(
-    force_scale: float,
-    stiffness_scale: float,
-    stiffness: float,
-    target: wp.vec3,
-    positions: wp.array[wp.vec3],
-    guess: wp.array[wp.vec3],
-    residual: wp.array[wp.vec3],
-    blocks: wp.array[wp.mat33],
-):
-    """A spring on vertex 0."""
-    residual[0] += force_scale * stiffness * (target - positions[0]) - stiffness_scale * stiffness * guess[0]
-    blocks[0] += stiffness_scale * stiffness * wp.identity(3, dtype=float)
-
-
-@wp.kernel(enable_backward=False)
-def pull_product(scale: float, direction: wp.array[wp.vec3], product: wp.array[wp.vec3]):
-    """The spring's stiffness times a direction."""
-    product[0] += scale * direction[0]
-
-
 class Spring:
-    """A linear term: an implicit spring that pulls vertex 0 to a target."""
+    """Forces on points: an implicit spring that pulls vertex 0 from where it is to a target."""
 
     def __init__(self, body, stiffness, target):
-        self.body, self.stiffness, self.target = body, stiffness, wp.vec3(*target)
+        self.body, self.stiffness, self.target = body, stiffness, np.asarray(target)
+        self.points = points = PointForces()
+        points.weights = as_array(np.eye(1, body.x.shape[0]), float)
+        points.touched, points.count = as_array([0], int), as_array([1], int)
+        points.force, points.product = (as_array([STILL], wp.vec3) for _ in range(2))
+        points.stiffness = as_array([stiffness * np.eye(3)], wp.mat33)
+        points.damping, points.system = (as_array(np.zeros((1, 3, 3)), wp.mat33) for _ in range(2))
 
-    def add_residual(self, scales, guess, earlier, residual, blocks):
-        """Add the spring's force."""
-        self.scale = scales.stiffness * self.stiffness
-        inputs = [scales.force, scales.stiffness, self.stiffness, self.target, self.body.x, guess, residual, blocks]
-        wp.launch(pull_residual, dim=1, inputs=inputs, device="cpu")
-
-    def add_product(self, direction, product):
-        """Add the spring's stiffness."""
-        inputs = [self.scale, direction, product]
-        wp.launch(pull_product, dim=1, inputs=inputs, device="cpu")
+    def aim(self):
+        """The points, with the force at the body's present position."""
+        self.points.force.assign([self.stiffness * (self.target - self.body.positions[0])])
+        return self.points
 
 
 def grid(axes):

@@ -122,7 +122,7 @@ def check_surface(surface: Surface, volume: float) -> None:
         return
     mesh = surface.mesh
     surface.refuse_branches()
-    assert np.bincount(mesh.face_vertex, minlength=surface.point_count).min() > 0
+    assert np.bincount(mesh.face_vertex, minlength=surface.site_count).min() > 0
     assert mesh.face_area_vector[:, 2].min() > -1e-13
     assert (surface.triangle_cap == -1).all()
     border = mesh.twin < 0
@@ -154,7 +154,7 @@ def check_closed(surface: Surface, volume: float) -> None:
     """Assert that a surface is a closed manifold without unused points around the volume."""
     mesh = surface.mesh
     assert surface.closed
-    assert np.bincount(mesh.face_vertex, minlength=surface.point_count).min() > 0
+    assert np.bincount(mesh.face_vertex, minlength=surface.site_count).min() > 0
     fans = mesh.face_vertex[np.unique(mesh.fan)]
     assert len(np.unique(fans)) == len(fans)
     np.testing.assert_allclose(surface.volume, volume, rtol=1e-11)

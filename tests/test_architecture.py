@@ -48,7 +48,7 @@ FEATURES = {
     "newton": ("solver", "report"),
     "pxr": ("usd",),
     "pymeshlab": ("wrap",),
-    "scipy": ("elastic", "wrap", "solver", "report"),
+    "scipy": ("surface", "elastic", "wrap", "solver", "report"),
     "trimesh": ("files",),
     "warp": ("harmonic", "elastic", "solver", "report"),
 }

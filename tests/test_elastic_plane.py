@@ -125,7 +125,7 @@ def test_nothing_leaves_the_plane(rotation, young):
     spring = Spring(body, 1e4, body.rest[0] + normal + rotation[:, 0])
     rest = body.positions
     for _ in range(200):
-        body.run(1, [1.0, -5.0, 7.0], forces=forces, term=spring)
+        body.run(1, [1.0, -5.0, 7.0], forces=forces, spring=spring)
         out_of_plane = (body.positions - rest) @ normal
         drift = body.velocities @ normal
         assert np.abs(out_of_plane).max() <= ROUNDING * np.abs(body.positions).max()

@@ -230,7 +230,7 @@ def test_linear_term_takes_part_in_the_solve(dimension):
     """A very stiff implicit spring holds a vertex at its target and stays stable."""
     body = Body(dimension, young=1e5, damping=0.02)
     target = body.rest[0] + [0.05, 0.0, 0.0]
-    body.run(200, body.gravity, term=Spring(body, 1e8, target))
+    body.run(200, body.gravity, spring=Spring(body, 1e8, target))
     np.testing.assert_allclose(body.positions[0], target, atol=1e-5)
     assert np.isfinite(body.positions).all()
 

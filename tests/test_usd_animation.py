@@ -36,7 +36,7 @@ def cut_body(*, offset: float = 0.0) -> BodyFrame:
 def animation(tmp_path):
     """Four frames of a body that is cut at the third."""
     path = tmp_path / "cut.usda"
-    with AnimationWriter(path, fps=30.0, meters_per_unit=0.01) as writer:
+    with AnimationWriter(path, fps=30.0, meters_per_unit=0.01, separate_caps=False, normals=True) as writer:
         writer.add_ground_plane(-1.0)
         for frame in range(4):
             make = whole_body if frame < 2 else cut_body
@@ -56,7 +56,7 @@ def test_every_sample_is_valid(animation):
 
 def test_extent_holds_the_points_between_samples(tmp_path):
     """Where the number of points changes USD holds the old ones until the next sample, and the extent has them in."""
-    with AnimationWriter(tmp_path / "fast.usda") as writer:
+    with AnimationWriter(tmp_path / "fast.usda", separate_caps=False) as writer:
         writer.write_frame(0, whole_body())
         writer.write_frame(1, cut_body(offset=50.0))
     stage = Usd.Stage.Open(str(tmp_path / "fast.usda"))
@@ -156,7 +156,7 @@ def test_sides_of_a_cut_share_no_vertices(tmp_path, slope):
     """Closed or wide open, the front of a cut has a sharp edge: each side has copies with its own normal there."""
     surface = partly_cut_box()
     caps = {"triangle_cap": surface.triangle_cap, "rest_points": surface.points}
-    with AnimationWriter(tmp_path / "open.usda") as writer:
+    with AnimationWriter(tmp_path / "open.usda", separate_caps=False, normals=True) as writer:
         writer.write_frame(
             0, BodyFrame(name="body", points=opened(surface, slope), triangles=surface.triangles, **caps)
         )
@@ -190,7 +190,7 @@ def test_vertex_without_area_has_a_unit_normal():
 
 def test_normals_left_out(tmp_path):
     """Without normals no vertex is copied and the file holds the body's own triangles."""
-    with AnimationWriter(tmp_path / "bare.usda", normals=False) as writer:
+    with AnimationWriter(tmp_path / "bare.usda", separate_caps=False, normals=False) as writer:
         writer.write_frame(0, cut_body())
     stage = Usd.Stage.Open(str(tmp_path / "bare.usda"))
     mesh = surface_of(stage)
@@ -222,7 +222,7 @@ def test_no_frame_at_all_leaves_a_valid_file(tmp_path):
 
 def test_refused_frame_writes_nothing(tmp_path):
     """A frame with an invalid body is refused before any of its bodies is written."""
-    with AnimationWriter(tmp_path / "refused.usda") as writer:
+    with AnimationWriter(tmp_path / "refused.usda", separate_caps=False) as writer:
         writer.write_frame(0, whole_body())
         bad = BodyFrame(name="bad", points=TETRAHEDRON, triangles=TRIANGLES + 1)
         with pytest.raises(ValueError, match="body bad: face 1 refers to vertex 4, but there are 4"):

@@ -142,7 +142,7 @@ def test_animation_of_a_plane_body(tmp_path):
             writer.write_frame(frame, body)
     stage = Usd.Stage.Open(str(tmp_path / "plane.usda"))
     assert validate_animation(stage) == []
-    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/World/sheet/surface"))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/World/sheet/skin"))
     assert mesh.GetDoubleSidedAttr().Get()
     assert len(mesh.GetFaceVertexIndicesAttr().Get(3.0)) == 3 * now.triangle_count
     counts = _curves(stage, "/World/sheet/cage").GetCurveVertexCountsAttr()

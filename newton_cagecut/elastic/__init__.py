@@ -3,11 +3,12 @@
 
 """The elastic body inside a cage: materials, quadrature and the reduced system (paper, section 6.1)."""
 
-from .backward_euler import LinearTerm, TermScales
 from .constitutive import ConstitutiveModel
 from .energy import Energy
 from .material import Material
 from .quadrature import exact_volumes, sample_quadrature
+from .solve.linear_solver import SolveLimits
+from .solve.point_forces import PointForces
 from .stages.step_record import COUNT_NAMES as STEP_COUNTS
 from .system import INTEGRATORS, ReducedSystem
 
@@ -16,10 +17,10 @@ __all__ = [
     "STEP_COUNTS",
     "ConstitutiveModel",
     "Energy",
-    "LinearTerm",
     "Material",
+    "PointForces",
     "ReducedSystem",
-    "TermScales",
+    "SolveLimits",
     "exact_volumes",
     "sample_quadrature",
 ]

@@ -13,6 +13,34 @@ import warp as wp
 
 from .stiffness import Stiffness
 
+CPU_WIDTH = 8
+"""Points that lie side by side in a vector on a CPU; see ``solve/lanes.py``."""
+MODULI_COUNT = 45
+"""Entries of a symmetric 9x9 matrix."""
+
+
+def padded_count(count: int) -> int:
+    """A count rounded up to full vectors."""
+    return -(-count // CPU_WIDTH) * CPU_WIDTH
+
+
+@wp.func
+def matrix_of(values: wp.array2d[float], q: int) -> wp.mat33:
+    """The 3x3 matrix in a column, row after row."""
+    matrix = wp.mat33()
+    for b in range(3):
+        for c in range(3):
+            matrix[b, c] = values[3 * b + c, q]
+    return matrix
+
+
+@wp.func
+def put_matrix(values: wp.array2d[float], q: int, matrix: wp.mat33):
+    """Write a 3x3 matrix to a column."""
+    for b in range(3):
+        for c in range(3):
+            values[3 * b + c, q] = matrix[b, c]
+
 
 @wp.struct
 class BodyArrays:
@@ -52,14 +80,26 @@ class BodyArrays:
     """Stabilising mass over the density, one a pair of vertices [m^3]."""
 
 
+FORCE, STIFFNESS, DAMPING = wp.constant(0), wp.constant(1), wp.constant(2)
+"""Scales of forces on points, of their stiffness and of their damping in the system."""
+ELASTIC_FORCE, ELASTIC_STIFFNESS = wp.constant(3), wp.constant(4)
+"""Scales of the stress and of the stiffness of the body itself, its damping included."""
+DAMPING_SHARE, START_SHARE = wp.constant(5), wp.constant(6)
+"""Share of the damping in that stiffness, and the factor of the forces at the start of the step."""
+TIME_STEP, STAGE_TIME = wp.constant(7), wp.constant(8)
+"""The time step and the scale of the stage [s]."""
+TARGET_VELOCITY, TARGET_REACHED = wp.constant(9), wp.constant(10)
+VELOCITY_KEPT, VELOCITY_REACHED = wp.constant(11), wp.constant(12)
+"""Factors of the stage's target and of its velocity; see ``stages/scheme.py``."""
+SCALE_COUNT = 13
+
+
 @wp.struct
 class StepArrays:
     """What a step works on."""
 
     scales: wp.array[wp.float64]
-    """Factors of forces and of stiffness in the system. A single Newton step from the start has two: the time step [s],
-    and it times itself and the damping [s^2]. A stage of scale k has four: k^2, k times k and the damping [s^2], the
-    share of the damping in that, and a factor of the forces at the start."""
+    """Factors of the step and of its present stage; see ``FORCE`` and what follows it."""
     displacement: wp.array[wp.vec3]
     """Displacements from rest before the step, one a vertex [m]."""
     lag: wp.array[wp.vec3]
@@ -68,8 +108,16 @@ class StepArrays:
     """Velocities with the first guess, later those after the solve, one a vertex [m/s]."""
     stiffnesses: wp.array[Stiffness]
     """Stiffness times volume and time scale, one a point."""
-    tensions: wp.array[wp.mat33]
-    """Stress, or its change with a direction, times volume and time scale, one a point."""
+    moduli: wp.array2d[float]
+    """The same as symmetric 9x9 matrices, one a column; see ``solve/lanes.py``, also of those below."""
+    tensions: wp.array2d[float]
+    """Stress, or its change with a direction, times volume and time scale, one a column."""
+    strain: wp.array2d[float]
+    """Gradient of the displacement, one a column."""
+    drift: wp.array2d[float]
+    """Gradient of what ``predicted`` holds, one a column."""
+    change: wp.array2d[float]
+    """Gradient of the solution, one a column."""
     rates: wp.array[float]
     """Size of the change of F in the step, one a point."""
     limit: wp.array[wp.vec4]
@@ -93,8 +141,10 @@ class LinearSystem:
     """The first guess, then the solution."""
     residual: wp.array[wp.vec3]
     """Right-hand side minus matrix times ``solution``."""
+    kept: wp.array[wp.vec3]
+    """The residual without the quadrature's part, at the start of a solve."""
     blocks: wp.array[wp.mat33]
-    """The matrix's diagonal blocks."""
+    """The matrix's diagonal blocks, then their inverses, where no factor conditions the solve."""
 
 
 def make_body_arrays(
@@ -147,23 +197,26 @@ def make_step_arrays(body: BodyArrays) -> StepArrays:
     capacity, points = body.rest.shape[0], body.volumes.shape[0]
     step = StepArrays()
     with wp.ScopedDevice(body.rest.device):
-        step.scales = wp.zeros(4, dtype=wp.float64)
+        step.scales = wp.zeros(SCALE_COUNT, dtype=wp.float64)
         for name in ("displacement", "lag", "predicted"):
             setattr(step, name, wp.zeros(capacity, dtype=wp.vec3))
         step.stiffnesses = wp.zeros(points, dtype=Stiffness)
-        step.tensions = wp.zeros(points, dtype=wp.mat33)
+        columns = padded_count(points)
+        step.moduli = wp.zeros((MODULI_COUNT, columns), dtype=float)
+        for name in ("tensions", "strain", "drift", "change"):
+            setattr(step, name, wp.zeros((9, columns), dtype=float))
         step.rates = wp.zeros(points, dtype=float)
         step.limit = wp.zeros(1, dtype=wp.vec4)
     return step
 
 
-def make_linear_system(row_count: wp.array, fixed: wp.array, normal: wp.array | None = None) -> LinearSystem:
-    """A system with as many rows as ``fixed`` has, all zero."""
-    capacity = fixed.shape[0]
+def make_linear_system(body: BodyArrays) -> LinearSystem:
+    """The system of a body's steps, all zero."""
+    capacity = body.fixed.shape[0]
     system = LinearSystem()
-    system.row_count, system.fixed, system.normal = row_count, fixed, normal
-    with wp.ScopedDevice(fixed.device):
-        system.solution, system.residual = (wp.zeros(capacity, dtype=wp.vec3) for _ in range(2))
+    system.row_count, system.fixed, system.normal = body.vertex_count, body.fixed, body.normal
+    with wp.ScopedDevice(body.fixed.device):
+        system.solution, system.residual, system.kept = (wp.zeros(capacity, dtype=wp.vec3) for _ in range(3))
         system.blocks = wp.zeros(capacity, dtype=wp.mat33)
     return system
 

@@ -12,8 +12,8 @@ import warp as wp
 
 from .arrays import BodyArrays
 from .constitutive import CONSTITUTIVE_MODELS
-from .launching import record
-from .step_kernels import make_deformation_function, tie
+from .launching import launch_later
+from .step_kernels import gather, make_deformation_function, tie
 
 wp.set_module_options({"enable_backward": False})
 
@@ -55,7 +55,7 @@ def make_elastic_energy_kernel(model: str, plane: bool) -> wp.Kernel:
     @wp.kernel(enable_backward=False, module="unique")
     def elastic_energy(body: BodyArrays, energies: EnergyArrays):
         q = wp.tid()
-        F = deformation(q, energies.displacement, body)
+        F = deformation(gather(q, energies.displacement, body), body)
         energies.elastic[q] = wp.float64(body.volumes[q]) * energy(F, body.material[0][0], body.material[0][1])
 
     return elastic_energy
@@ -99,8 +99,8 @@ class EnergyMeter:
             energies.elastic = wp.zeros(points, dtype=wp.float64)
             energies.ties, energies.kinetic = (wp.zeros(self._capacity, dtype=wp.float64) for _ in range(2))
         elastic_energy = make_elastic_energy_kernel(model, body.normal is not None)
-        self._elastic_energy = record(elastic_energy, points, [body, energies], self.device)
-        self._tie_energy = record(find_tie_energy, self._capacity, [body, energies], self.device)
+        self._elastic_energy = launch_later(elastic_energy, points, [body, energies], self.device)
+        self._tie_energy = launch_later(find_tie_energy, self._capacity, [body, energies], self.device)
 
     def of(self, positions: wp.array, velocities: wp.array) -> Energy:
         """Energies of a state, read on the host.

@@ -11,12 +11,12 @@ _BLOCK_SIZE = 256
 """Threads of a launch of one thread block on CUDA; on the CPU it has one."""
 
 
-def record(kernel: wp.Kernel, dim: int | tuple[int, int], inputs: list, device: wp.context.Device) -> wp.Launch:
+def launch_later(kernel: wp.Kernel, dim: int | tuple[int, int], inputs: list, device: wp.context.Device) -> wp.Launch:
     """A launch that is not made yet."""
     return wp.launch(kernel, dim=dim, inputs=inputs, device=device, record_cmd=True)
 
 
-def record_block(kernel: wp.Kernel, inputs: list, device: wp.context.Device) -> wp.Launch:
+def block_later(kernel: wp.Kernel, inputs: list, device: wp.context.Device) -> wp.Launch:
     """A launch of one thread block that is not made yet."""
     size = _BLOCK_SIZE if device.is_cuda else 1
     return wp.launch(kernel, dim=size, inputs=inputs, block_dim=size, device=device, record_cmd=True)

@@ -13,8 +13,8 @@ from __future__ import annotations
 
 import warp as wp
 
-from .arrays import BodyArrays, LinearSystem, StepArrays
-from .step_kernels import gather
+from .arrays import TIME_STEP, BodyArrays, LinearSystem, StepArrays, matrix_of
+from .stages.step_record import StepRecord
 
 wp.set_module_options({"enable_backward": False})
 
@@ -30,15 +30,15 @@ def find_velocities(velocities: wp.array[wp.vec3], step: StepArrays, system: Lin
 
 
 @wp.kernel(enable_backward=False)
-def find_rates(dt: float, body: BodyArrays, step: StepArrays):
+def find_rates(step: StepArrays):
     """Size of the change of F at each quadrature point in this step."""
     q = wp.tid()
-    change = gather(q, step.predicted, body)
-    step.rates[q] = dt * wp.sqrt(wp.ddot(change, change))
+    change = matrix_of(step.drift, q)
+    step.rates[q] = float(step.scales[TIME_STEP]) * wp.sqrt(wp.ddot(change, change))
 
 
 @wp.kernel(enable_backward=False)
-def find_limit(body: BodyArrays, step: StepArrays):
+def find_limit(body: BodyArrays, step: StepArrays, record: StepRecord):
     """Mean velocity, and the factor on velocities relative to it that keeps changes of F small; one thread block."""
     thread = wp.tid()
     greatest_part = float(0.0)
@@ -54,13 +54,13 @@ def find_limit(body: BodyArrays, step: StepArrays):
         factor = float(1.0)
         if greatest > GREATEST_CHANGE:
             factor = GREATEST_CHANGE / greatest
+            record.limited[0] = 1
         mass = momentum[3]
         step.limit[0] = wp.vec4(momentum[0] / mass, momentum[1] / mass, momentum[2] / mass, factor)
 
 
 @wp.kernel(enable_backward=False)
 def finish_step(
-    dt: float,
     positions: wp.array[wp.vec3],
     velocities: wp.array[wp.vec3],
     body: BodyArrays,
@@ -79,6 +79,6 @@ def finish_step(
         if factor < 1.0 and body.fixed[i] == 0:
             mean = wp.vec3(limit[0], limit[1], limit[2])
             velocity = mean + factor * (velocity - mean)
-        position += dt * velocity
+        position += float(step.scales[TIME_STEP]) * velocity
     velocities_out[i] = velocity
     positions_out[i] = position

@@ -12,7 +12,7 @@ from __future__ import annotations
 import warp as wp
 
 from .arrays import BodyArrays
-from .launching import record
+from .launching import launch_later
 
 wp.set_module_options({"enable_backward": False})
 
@@ -72,8 +72,8 @@ def record_masses(body: BodyArrays) -> tuple[wp.Launch, ...]:
     """The launches that bring anchors, masses and the number of pieces up to date, in their order."""
     capacity, points, device = body.rest.shape[0], body.volumes.shape[0], body.rest.device
     return (
-        record(find_anchors, points, [body], device),
-        record(assemble_mass, (capacity, capacity), [body], device),
-        record(sum_mass, capacity, [body], device),
-        record(count_pieces, 1, [body], device),
+        launch_later(find_anchors, points, [body], device),
+        launch_later(assemble_mass, (capacity, capacity), [body], device),
+        launch_later(sum_mass, capacity, [body], device),
+        launch_later(count_pieces, 1, [body], device),
     )

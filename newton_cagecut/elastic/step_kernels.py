@@ -14,9 +14,21 @@ import functools
 
 import warp as wp
 
-from .arrays import BodyArrays, LinearSystem, StepArrays
+from .arrays import (
+    DAMPING,
+    ELASTIC_FORCE,
+    ELASTIC_STIFFNESS,
+    FORCE,
+    STIFFNESS,
+    TIME_STEP,
+    BodyArrays,
+    LinearSystem,
+    StepArrays,
+    matrix_of,
+    put_matrix,
+)
 from .constitutive import CONSTITUTIVE_MODELS
-from .stiffness import apply_stiffness, make_stiffness_function, vertex_block
+from .stiffness import Stiffness, apply_stiffness, make_stiffness_function
 
 wp.set_module_options({"enable_backward": False})
 
@@ -33,11 +45,11 @@ def gather(q: int, values: wp.array[wp.vec3], body: BodyArrays) -> wp.mat33:
 
 @functools.cache
 def make_deformation_function(plane: bool) -> wp.Function:
-    """The function that finds F at one quadrature point, in the cage's rest frame, of a plane or a solid body."""
+    """The function that makes F, in the cage's rest frame, of a displacement's gradient; of a plane or a solid body."""
 
     @wp.func
-    def deformation(q: int, displacement: wp.array[wp.vec3], body: BodyArrays) -> wp.mat33d:
-        change = wp.transpose(body.rotation[0]) * gather(q, displacement, body)
+    def deformation(gradient: wp.mat33, body: BodyArrays) -> wp.mat33d:
+        change = wp.transpose(body.rotation[0]) * gradient
         if wp.static(plane):
             change[2] = wp.vec3()
         return wp.identity(3, dtype=wp.float64) + wp.mat33d(change)
@@ -67,8 +79,12 @@ def begin_step(
     step.predicted[i] = velocities[i] + guess
     if i == 0:
         seconds = wp.float64(dt)
-        step.scales[0] = seconds
-        step.scales[1] = seconds * (seconds + body.material[0][2])
+        step.scales[FORCE] = seconds
+        step.scales[STIFFNESS] = seconds * seconds
+        step.scales[DAMPING] = seconds
+        step.scales[ELASTIC_FORCE] = seconds
+        step.scales[ELASTIC_STIFFNESS] = seconds * (seconds + body.material[0][2])
+        step.scales[TIME_STEP] = seconds
 
 
 @functools.cache
@@ -81,15 +97,18 @@ def make_strain_kernel(model: str, plane: bool) -> wp.Kernel:
     @wp.kernel(enable_backward=False, module="unique")
     def strain(body: BodyArrays, step: StepArrays):
         q = wp.tid()
-        R = body.rotation[0]
-        mu, lam = body.material[0][0], body.material[0][1]
         volume = wp.float64(body.volumes[q])
-        F = deformation(q, step.displacement, body)
-        stiffness = stiffness_function(F, mu, lam, volume * step.scales[1])
-        stiffness.left = R * stiffness.left
+        stiffness, force = Stiffness(), wp.mat33()
+        if volume != wp.float64(0.0):
+            R = body.rotation[0]
+            mu, lam = body.material[0][0], body.material[0][1]
+            F = deformation(matrix_of(step.strain, q), body)
+            stiffness = stiffness_function(F, mu, lam, volume * step.scales[ELASTIC_STIFFNESS])
+            stiffness.left = R * stiffness.left
+            force = R * wp.mat33(step.scales[ELASTIC_FORCE] * volume * stress(F, mu, lam))
+            force += apply_stiffness(stiffness, matrix_of(step.drift, q))
         step.stiffnesses[q] = stiffness
-        force = R * wp.mat33(step.scales[0] * volume * stress(F, mu, lam))
-        step.tensions[q] = force + apply_stiffness(stiffness, gather(q, step.predicted, body))
+        put_matrix(step.tensions, q, force)
 
     return strain
 
@@ -112,43 +131,14 @@ def tie(i: int, values: wp.array[wp.vec3], body: BodyArrays) -> wp.vec3:
 
 
 @wp.kernel(enable_backward=False)
-def find_residual(dt: float, forces: wp.array[wp.vec3], body: BodyArrays, step: StepArrays, system: LinearSystem):
-    """Right-hand side minus matrix times the first guess, and the matrix's diagonal blocks."""
+def find_residual(forces: wp.array[wp.vec3], body: BodyArrays, step: StepArrays, system: LinearSystem):
+    """Right-hand side minus matrix times the first guess, without the quadrature's part."""
     i = wp.tid()
     r = wp.vec3()
-    block = wp.identity(3, dtype=float)
     if i < body.vertex_count[0]:
-        r = add_inertia(dt * forces[i], i, step.lag, body)
-        block = body.mass[i, i] * block
-        for q in range(body.volumes.shape[0]):
-            r -= step.tensions[q] * body.gradients[q, i]
-            block += vertex_block(step.stiffnesses[q], body.gradients[q, i])
+        r = add_inertia(float(step.scales[TIME_STEP]) * forces[i], i, step.lag, body)
         if body.stabilizing_stiffness[i, i] > 0.0:
             mu = body.material[0][0]
-            ties = float(mu * step.scales[1])
-            r -= float(mu * step.scales[0]) * tie(i, step.displacement, body)
-            r -= ties * tie(i, step.predicted, body)
-            block += (ties * body.stabilizing_stiffness[i, i]) * wp.identity(3, dtype=float)
+            r -= float(mu * step.scales[ELASTIC_FORCE]) * tie(i, step.displacement, body)
+            r -= float(mu * step.scales[ELASTIC_STIFFNESS]) * tie(i, step.predicted, body)
     system.residual[i] = r
-    system.blocks[i] = block
-
-
-@wp.kernel(enable_backward=False)
-def find_tensions(direction: wp.array[wp.vec3], body: BodyArrays, step: StepArrays):
-    """Change of stress, times volume and time scale, with a direction of velocities."""
-    q = wp.tid()
-    step.tensions[q] = apply_stiffness(step.stiffnesses[q], gather(q, direction, body))
-
-
-@wp.kernel(enable_backward=False)
-def multiply_system(direction: wp.array[wp.vec3], body: BodyArrays, step: StepArrays, product: wp.array[wp.vec3]):
-    """The system matrix times a direction that is zero on fixed vertices."""
-    i = wp.tid()
-    result = wp.vec3()
-    if i < body.vertex_count[0] and body.fixed[i] == 0:
-        result = add_inertia(result, i, direction, body)
-        for q in range(body.volumes.shape[0]):
-            result += step.tensions[q] * body.gradients[q, i]
-        if body.stabilizing_stiffness[i, i] > 0.0:
-            result += float(body.material[0][0] * step.scales[1]) * tie(i, direction, body)
-    product[i] = result

@@ -107,19 +107,3 @@ def apply_stiffness(stiffness: Stiffness, dF: wp.mat33) -> wp.mat33:
             T[i, j] = stiffness.straight[3 - i - j] * D[i, j] + stiffness.crossed[3 - i - j] * D[j, i]
             T[j, i] = stiffness.straight[3 - i - j] * D[j, i] + stiffness.crossed[3 - i - j] * D[i, j]
     return stiffness.left * T * wp.transpose(stiffness.right)
-
-
-@wp.func
-def vertex_block(stiffness: Stiffness, gradient: wp.vec3) -> wp.mat33:
-    """The 3x3 matrix B with a . B b = (a (x) gradient) : stiffness : (b (x) gradient)."""
-    h = wp.transpose(stiffness.right) * gradient
-    B = wp.mat33()
-    for i in range(3):
-        B[i, i] += stiffness.stretch[i, i] * h[i] * h[i]
-        for j in range(i):
-            k = 3 - i - j
-            B[i, i] += stiffness.straight[k] * h[j] * h[j]
-            B[j, j] += stiffness.straight[k] * h[i] * h[i]
-            B[i, j] = (stiffness.stretch[i, j] + stiffness.crossed[k]) * h[i] * h[j]
-            B[j, i] = B[i, j]
-    return stiffness.left * B * wp.transpose(stiffness.left)

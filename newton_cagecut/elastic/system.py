@@ -9,12 +9,15 @@ import numpy as np
 import warp as wp
 
 from .arrays import make_body_arrays
-from .backward_euler import BackwardEuler, LinearTerm, Motion
+from .backward_euler import BackwardEuler
 from .energy import Energy, EnergyMeter
-from .launching import record
+from .implicit_integrator import Motion
+from .launching import launch_later
 from .mass import record_masses
 from .material import Material
 from .plane_confinement import find_normal
+from .solve.linear_solver import SolveLimits
+from .solve.point_forces import PointForces
 from .stabilization import lumped_mass, stabilize
 from .stages.scheme import SCHEMES
 from .stages.stage_integrator import StageIntegrator
@@ -50,8 +53,7 @@ class ReducedSystem:
         integrator: One of ``INTEGRATORS``: ``"tr_bdf2"`` or ``"backward_euler"`` (see ``stages/scheme.py``), or
             ``"paper"`` for the paper's single step.
         newton_iterations: Linear solves in each stage; the paper's has one.
-        max_iterations: Most iterations of a solve.
-        tolerance: Factor by which a solve shrinks the preconditioned residual.
+        limits: How exactly systems are solved.
 
     Raises:
         TypeError: If an array has the wrong type.
@@ -73,8 +75,7 @@ class ReducedSystem:
         thickness: float | None = None,
         integrator: str = "tr_bdf2",
         newton_iterations: int = 1,
-        max_iterations: int = 150,
-        tolerance: float = 1.0e-5,
+        limits: SolveLimits | None = None,
     ):
         if thickness is not None and not (np.isfinite(thickness) and thickness > 0.0):
             raise ValueError(f"ReducedSystem thickness is {thickness} m; it must be positive.")
@@ -101,17 +102,17 @@ class ReducedSystem:
         self.mass, self.vertex_mass = body.mass, body.vertex_mass
         self.stabilizing_stiffness, self.stabilizing_mass = body.stabilizing_stiffness, body.stabilizing_mass
         self.record = make_step_record(self.device, None, None)
-        limits = {"max_iterations": max_iterations, "tolerance": tolerance, "step_record": self.record}
+        options = {"limits": SolveLimits() if limits is None else limits, "record": self.record}
         if integrator == "paper":
-            self._integrator = BackwardEuler(body, material.model, **limits)
+            self._integrator = BackwardEuler(body, material.model, **options)
         else:
             self._integrator = StageIntegrator(
-                body, material.model, SCHEMES[integrator], newton_iterations=newton_iterations, **limits
+                body, material.model, SCHEMES[integrator], newton_iterations=newton_iterations, **options
             )
         self._energy = EnergyMeter(body, material.model)
         self._refresh_launches = record_masses(body)
         if self.is_plane:
-            self._refresh_launches += (record(find_normal, 1, [body], self.device),)
+            self._refresh_launches += (launch_later(find_normal, 1, [body], self.device),)
         self._tied_mass = np.zeros((0, 0))
         self.set_material(material)
 
@@ -155,10 +156,11 @@ class ReducedSystem:
         self._tied_mass = mass
 
     def refresh(self) -> None:
-        """Bring masses and anchors up to date after an edit of weights, volumes or the vertex count."""
+        """Bring masses, anchors and lanes up to date after an edit of weights, gradients, volumes or the count."""
         self._lump_mass()
         for launch in self._refresh_launches:
             launch.launch()
+        self._integrator.solver.refresh()
 
     def _lump_mass(self) -> None:
         """Bring the stabilising mass up to date."""
@@ -180,7 +182,7 @@ class ReducedSystem:
         *,
         gravity: wp.array,
         forces: wp.array | None = None,
-        term: LinearTerm | None = None,
+        points: PointForces | None = None,
     ) -> None:
         """Advance the vertices by one step; outputs may be the inputs.
 
@@ -196,13 +198,13 @@ class ReducedSystem:
             dt: Time step [s].
             gravity: Gravity, shape (1,) vec3 [m/s^2].
             forces: Further forces on the vertices, shape (vertex_capacity,) vec3 [N].
-            term: A further term of the system.
+            points: Forces on embedded points, such as contact.
         """
         before, after = Motion(positions, velocities), Motion(positions_out, velocities_out)
-        self._integrator.step(before, after, dt, gravity=gravity, forces=forces, term=term)
+        self._integrator.step(before, after, dt, gravity=gravity, forces=forces, points=points)
 
     def step_statistics(self) -> dict[str, object]:
-        """What the steps were like, read on the host; the paper's single step is not recorded.
+        """What the steps were like, read on the host.
 
         ``steps`` in all, of which ``refused``: their result was not finite (``reason``), so they were not made;
         ``limited``: a solution was not taken whole, or velocities were too wild for the step; ``stalled``: a solution

@@ -117,13 +117,6 @@ def welded(mesh: FileMesh) -> FileMesh:
     return FileMesh(mesh.name, mesh.points[kept], mesh.counts, number[mesh.indices], uvs, normals)
 
 
-def coincident_count(mesh: FileMesh) -> int:
-    """Number of points of faces that stand where others of them do."""
-    points = used_points(mesh).points
-    points = points[np.lexsort(points.T)]
-    return int((points[1:] == points[:-1]).all(axis=1).sum())
-
-
 def _of_points(values: np.ndarray | None, indices: np.ndarray, count: int) -> np.ndarray | None:
     """Values of corners as values of their points, zero for points without corners."""
     if values is None:

@@ -16,7 +16,7 @@ from ..geometry import as_number, polygon_triangles
 from ..surface import Surface
 from ..usd import check_mesh, read_meshes, turn_up
 from ..usd import read_cage as read_usd_cage
-from .file_mesh import FileMesh, coincident_count, joined, split_at_seams, used_points, welded
+from .file_mesh import FileMesh, joined, split_at_seams, used_points, welded
 from .obj_file import read_obj
 from .off_file import read_off
 from .ply_file import read_ply
@@ -50,9 +50,8 @@ def read_mesh(
         up_axis: ``"Y"`` or ``"Z"`` turns USD and glTF from their own up axis to this one. The others say no axis and
             stay as they stand.
         name: The mesh to read: its name, or in USD the path of a prim with meshes below it.
-        weld: Whether points at one place are joined, as those of STL always are. Only then are meshes whose points
-            are split, at seams of texture coordinates or normals, whole for cuts. Texture coordinates that differ
-            there are left out, normals become their mean.
+        weld: Whether points at one place are joined, as those of STL always are. Texture coordinates that differ
+            there are left out, normals become their mean. Without, surfaces know seams by where their points stand.
 
     Returns:
         The surface [m].
@@ -67,12 +66,6 @@ def read_mesh(
     mesh = joined(meshes)
     if weld or path.suffix.lower() == ".stl":
         mesh = welded(mesh)
-    elif count := coincident_count(mesh):
-        warnings.warn(
-            f"{path}: {count} points stand where others do, at seams, along which cuts find the mesh open; "
-            "weld=True joins them",
-            stacklevel=2,
-        )
     triangles = polygon_triangles(mesh.points, mesh.counts, mesh.indices)
     triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
     if len(triangles) == 0:

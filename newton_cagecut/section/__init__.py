@@ -8,6 +8,7 @@ A blade sweeps a plane; a strip is the section of a mesh with it, which opens up
 from .blade import Blade, BladePlane
 from .clearing import clear_plane, clear_turn
 from .hinge import Hinge
+from .nodes import Nodes
 from .opening import Opening
 from .section import Section
 from .strip import Strip
@@ -17,6 +18,7 @@ __all__ = [
     "Blade",
     "BladePlane",
     "Hinge",
+    "Nodes",
     "Opening",
     "Section",
     "Strip",

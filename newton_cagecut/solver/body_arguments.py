@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import newton
 import numpy as np
@@ -19,21 +19,32 @@ from ..surface import Surface
 from .body.definition import Capacity
 
 
-def as_surface(mesh: Surface | tuple[np.ndarray, np.ndarray] | newton.Mesh) -> Surface:
+def as_surface(
+    mesh: Surface | tuple[np.ndarray, np.ndarray] | newton.Mesh,
+    *,
+    weld: float | None = None,
+    data: Mapping[str, object] | None = None,
+) -> Surface:
     """The surface that a mesh is.
 
     Args:
         mesh: What was passed.
+        weld: Distance up to which ends of open edges count as one [m]; None for the default.
+        data: Arrays of its points, corners or triangles.
 
     Raises:
-        TypeError: It is no mesh.
+        TypeError: It is no mesh, or an array is not of numbers.
+        ValueError: The mesh is wrong, an array does not fit it, or ``weld`` comes with a surface.
     """
     if isinstance(mesh, Surface):
-        return mesh
+        if weld is not None:
+            raise ValueError("weld belongs to the mesh's surface: pass Surface(points, triangles, weld=...)")
+        return mesh if data is None else mesh.with_data(data)
     if isinstance(mesh, newton.Mesh):
-        return Surface(np.asarray(mesh.vertices), np.asarray(mesh.indices).reshape(-1, 3))
+        points, triangles = np.asarray(mesh.vertices), np.asarray(mesh.indices).reshape(-1, 3)
+        return Surface(points, triangles, uvs=mesh.uvs, normals=mesh.normals, weld=weld, data=data)
     if isinstance(mesh, tuple) and len(mesh) == 2:
-        return Surface(*mesh)
+        return Surface(*mesh, weld=weld, data=data)
     raise TypeError(f"mesh must be a Surface, a newton.Mesh or (points, triangles), got {type(mesh).__name__}")
 
 

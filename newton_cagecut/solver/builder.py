@@ -11,7 +11,7 @@ plane of the world, in plane strain (two dimensions of the paper's elasticity, s
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import newton
 import numpy as np
@@ -76,6 +76,8 @@ def add_cage_body(
     thickness: float | None = None,
     seed: int = 0,
     label: str | None = None,
+    weld: float | None = None,
+    data: Mapping[str, object] | None = None,
     **options: object,
 ) -> int:
     """Add an elastic body that a cage deforms.
@@ -103,6 +105,10 @@ def add_cage_body(
         thickness: Thickness of a plane body [m], which its mass is proportional to; 1 m by default.
         seed: Seed of walks and quadrature.
         label: Name of the body.
+        weld: Distance up to which ends of open edges of the mesh count as one, as at seams of texture coordinates; by
+            default 1e-6 of its size, as in ``Surface`` [m]. A ``Surface`` has been welded when it was made.
+        data: Arrays of the mesh's points, corners or triangles, as in ``Surface``, which cuts carry along and
+            ``SolverCageCut.surface(state, body, data=True)`` gives back.
         options: Further keyword options of ``HarmonicCoordinates``.
 
     Returns:
@@ -119,7 +125,7 @@ def add_cage_body(
         raise TypeError(f"cage must be a Cage, got {type(cage).__name__}")
     if FREQUENCY not in builder.custom_frequencies:
         raise ValueError("call SolverCageCut.register_custom_attributes(builder) before add_cage_body")
-    surface = arguments.as_surface(mesh)
+    surface = arguments.as_surface(mesh, weld=weld, data=data)
     thickness = arguments.as_thickness(thickness, cage, surface)
     check_inside(cage, surface.points)
     labels = builder.custom_attributes["cagecut:body_label"].values or []
@@ -146,7 +152,7 @@ def add_cage_body(
     vertex_start = _add_particles(builder, cage.vertices, capacity.vertices, frame, velocity, radius=0.0, active=False)
     surface_start = -1
     if contact_radius is not None:
-        points, room = surface.points, capacity.surface_points
+        points, room = surface.site_points, capacity.surface_points
         surface_start = _add_particles(builder, points, room, frame, velocity, radius=contact_radius, active=True)
     builder.add_custom_values(
         **{

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 
-from ..elastic import INTEGRATORS
+from ..elastic import INTEGRATORS, SolveLimits
 from ..geometry import as_index, as_number
 
 
@@ -34,6 +34,10 @@ class Config:
     tolerance: float = 1.0e-5
     """Factor by which a step's linear solve shrinks the preconditioned residual, in (0, 1)."""
 
+    dense_vertices: int = SolveLimits().dense_vertices
+    """Most cage vertices, spare ones included, of a body whose solves have a dense factor of its matrix; a larger one
+    has the inverses of the matrix's diagonal blocks."""
+
     def __post_init__(self) -> None:
         if self.integrator not in INTEGRATORS:
             names = ", ".join(map(repr, INTEGRATORS))
@@ -48,8 +52,16 @@ class Config:
         object.__setattr__(self, "tolerance", as_number(self.tolerance, "SolverCageCut tolerance"))
         if self.max_iterations < 1:
             raise ValueError(f"SolverCageCut max_iterations must be at least 1, got {self.max_iterations}")
+        object.__setattr__(self, "dense_vertices", as_index(self.dense_vertices, "SolverCageCut dense_vertices"))
+        if self.dense_vertices < 0:
+            raise ValueError(f"SolverCageCut dense_vertices must not be negative, got {self.dense_vertices}")
         if not 0.0 < self.tolerance < 1.0:
             raise ValueError(f"SolverCageCut tolerance must lie in (0, 1), got {self.tolerance}: larger is faster")
+
+    @property
+    def limits(self) -> SolveLimits:
+        """How exactly linear systems are solved."""
+        return SolveLimits(self.max_iterations, self.tolerance, self.dense_vertices)
 
     @classmethod
     def of(cls, config: Config | None, options: dict[str, object]) -> Config:

@@ -109,11 +109,11 @@ def _axes(body: SimulatedBody) -> dict[int, int]:
     """Lengths of axes that have room to spare, and how much of each is in use."""
     capacity, quadrature = body.capacity, body.quadrature_count
     used_quadrature = body.quadrature.used_count if body.quadrature is not None else 0
-    points, used_points = quadrature + capacity.surface_points, used_quadrature + body.surface.point_count
+    points, used_points = quadrature + capacity.surface_points, used_quadrature + body.surface.site_count
     walks = body.definition.walks
     pairs = (
         (capacity.surface_triangles, len(body.surface.triangles)),
-        (capacity.surface_points, body.surface.point_count),
+        (capacity.surface_points, body.surface.site_count),
         (capacity.vertices, body.cage.vertex_count),
         (quadrature, used_quadrature),
         (points, used_points),
@@ -201,4 +201,4 @@ def _room_reason(body: SimulatedBody) -> str:
     if not body.definition.cuttable:
         return "cuttable=False"
     vertices = body.capacity.vertices - body.cage.vertex_count
-    return f"{vertices} vertices, {body.capacity.surface_points - body.surface.point_count} surface points to come"
+    return f"{vertices} vertices, {body.capacity.surface_points - body.surface.site_count} surface points to come"

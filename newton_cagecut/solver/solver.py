@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
+from typing import TYPE_CHECKING
 
 import newton
 import numpy as np
@@ -29,6 +30,10 @@ from .plan import PlanEntry, plan_of, plan_of_scene
 from .progress_bars import fraction_bar
 from .viewing import SurfaceViewer
 from .warm_up import warm_up
+
+if TYPE_CHECKING:  # a scene without animations does not import USD
+    from ..usd import SceneFrame
+    from .scene_recorder import SceneRecorder
 
 
 class SolverCageCut(newton.solvers.SolverBase):
@@ -84,6 +89,7 @@ class SolverCageCut(newton.solvers.SolverBase):
             ]
         self._bodies = tuple(CageBody(body) for body in self._simulated)
         self._viewer = SurfaceViewer()
+        self._recorder: SceneRecorder | None = None
         labels, systems = zip(*((body.label, body.system) for body in self._simulated), strict=True)
         self._watch = StepWatch(labels, systems, model.device)
 
@@ -254,14 +260,28 @@ class SolverCageCut(newton.solvers.SolverBase):
         """
         snapshot.restore()
 
-    def surface(self, state: newton.State, body: int | str = 0) -> tuple[np.ndarray, np.ndarray]:
+    def surface(
+        self, state: newton.State, body: int | str = 0, *, data: bool = False
+    ) -> tuple[np.ndarray, np.ndarray] | tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
         """The surface of a body in a state.
 
+        The mesh's own points come first, with their numbers; points that cuts have made come after them.
+
+        Args:
+            state: The state.
+            body: Index or label of the body.
+            data: Whether the arrays that were registered with the body are wanted, as they are now; see
+                ``Surface.data``.
+
         Returns:
-            Points in the world [m], shape (n, 3), float32, and triangles, shape (m, 3), int32.
+            Points in the world [m], shape (n, 3), float32, and triangles, shape (m, 3), int32; with ``data`` also
+            arrays by name, of shapes (n, ...), (m, 3, ...) and (m, ...).
         """
         found = self._simulated[self._row(body)]
-        return found.surface_points(state).numpy().copy(), np.array(found.surface.triangles, dtype=np.int32)
+        points, triangles = found.surface_points(state).numpy().copy(), found.surface.triangles.astype(np.int32)
+        if not data:
+            return points, triangles
+        return points, triangles, {name: array.copy() for name, array in found.surface.data.items()}
 
     def pieces(self, body: int | str = 0) -> tuple[BodyPiece, ...]:
         """The pieces that a body is in: vertices, faces, surface points and triangles, volume and mass of each.
@@ -279,13 +299,28 @@ class SolverCageCut(newton.solvers.SolverBase):
         for body in self._simulated:
             self._viewer.log(viewer, body, state)
 
+    def scene_frame(self, state: newton.State) -> SceneFrame:
+        """What the scene looks like in a state: for ``AnimationWriter.write_frame(frame, solver, state)``.
+
+        Args:
+            state: The state.
+
+        Raises:
+            ValueError: The state missed an edit of a body.
+        """
+        if self._recorder is None:
+            from .scene_recorder import SceneRecorder
+
+            self._recorder = SceneRecorder(self.model, self._simulated)
+        return self._recorder.frame(state)
+
     def statistics(self) -> list[dict[str, object]]:
         """How the steps of each body went, one record a body, read on the host.
 
         Each has its ``body`` and, of a body with elasticity: ``steps`` in all, of which ``refused`` could not be made,
         for the ``reason`` of the last; ``limited``, whose solution was not taken whole; ``stalled``, where it was not
         taken at all; ``missed``, where a solve ended short of the tolerance; ``iterations`` and ``residual`` of the
-        last, ``most_iterations`` and ``worst_residual`` of all. Steps with integrator="paper" are not recorded.
+        last, ``most_iterations`` and ``worst_residual`` of all.
         """
         return self._watch.statistics()
 

@@ -8,7 +8,8 @@ flat mesh, whose triangles fill the body; as a mesh in space it lies in the plan
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import copy
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -17,6 +18,7 @@ from ..cage import Wall
 from ..geometry import (
     PolygonMesh,
     as_integers,
+    as_number,
     as_points,
     check_finite,
     lifted,
@@ -24,6 +26,8 @@ from ..geometry import (
     units,
     winding_numbers,
 )
+from .attributes import Attributes
+from .welding import WELD, weld_seams
 
 _CANCELLED = 1e-9
 _FLAT = 1e-13
@@ -31,7 +35,11 @@ _NO_LENGTH = 1e-30
 
 
 class Surface:
-    """A triangle mesh at rest, closed, open or flat, with what earlier cuts left on it; immutable."""
+    """A triangle mesh at rest, closed, open or flat, with what earlier cuts left on it; immutable.
+
+    Points that were split along seams, for texture coordinates or normals, share a *site*: topology, walks and weights
+    are those of sites, attributes those of points or corners. Points keep their numbers under cuts.
+    """
 
     def __init__(
         self,
@@ -42,17 +50,30 @@ class Surface:
         normals: np.ndarray | None = None,
         triangle_cap: np.ndarray | None = None,
         point_key: np.ndarray | None = None,
+        weld: float | None = None,
+        data: Mapping[str, object] | None = None,
     ):
         """Validate and build a surface.
+
+        Open edges that lie on each other, end on end and in opposite directions, are a seam: their points move as one.
+        Edges that are closed as they are given are left alone, and so are points on walls. Triangles that a seam makes
+        a line are left out.
 
         Args:
             points: Rest positions, shape (point_count, 3), or (point_count, 2) in the plane [m].
             triangles: Point ids, counterclockwise seen from outside, in the plane seen from +z, shape
                 (triangle_count, 3).
-            uvs: Texture coordinates of the points, shape (point_count, 2).
+            uvs: Texture coordinates of the points, shape (point_count, 2), or of the triangles' corners, shape
+                (triangle_count, 3, 2).
             normals: Unit normals of the points, shape (point_count, 3); none in the plane.
             triangle_cap: Wall of the cut that each triangle caps, -1 for the original surface, shape (triangle_count,).
             point_key: ``2 * wall + side`` of the wall on which each point lies, -1 inside, shape (point_count,).
+            weld: Distance up to which ends of open edges lie on each other, 0 for points at exactly one place [m]; by
+                default 1e-6 of the longest side of the box around the points. Negative: nothing is joined.
+            data: Further arrays by name, which cuts carry along: of points, shape (point_count, ...), of corners,
+                shape (triangle_count, 3, ...), or of triangles, shape (triangle_count, ...). Where a shape could be of
+                two of them, a pair says which: ``("triangle", array)``; (triangle_count, 3, k) is taken to be of
+                corners.
 
         Raises:
             TypeError: If something is not numbers, or the triangles not integers.
@@ -62,34 +83,71 @@ class Surface:
         self.triangles = _as_triangles(triangles, len(self.points))
         if self.dimension == 2:
             _check_flat(self.points[self.triangles], normals)
-        self.uvs = _as_point_values(uvs, "uvs", 2, len(self.points))
+        self.uvs, self.own_corner_uvs = _as_uvs(uvs, len(self.points), len(self.triangles))
         self.normals = _as_point_values(normals, "normals", 3, len(self.points))
+        self.attributes = Attributes.of(data, len(self.points), len(self.triangles))
         self.triangle_cap = _as_labels(triangle_cap, "triangle_cap", len(self.triangles))
         self.cap_side = np.zeros(len(self.triangles), dtype=np.int8)
-        self.point_key = _as_labels(point_key, "point_key", len(self.points))
+        self.site_key = _as_labels(point_key, "point_key", len(self.points))
+        self.site_points, self.point_site = self.points, None
+        self._join_seams(_as_weld(weld, self.points))
         self._freeze()
 
     @classmethod
     def _assembled(
         cls,
+        *,
         points: np.ndarray,
         triangles: np.ndarray,
+        point_site: np.ndarray | None,
+        sites: np.ndarray,
+        site_key: np.ndarray,
         uvs: np.ndarray | None,
+        own_corner_uvs: np.ndarray | None,
         normals: np.ndarray | None,
         triangle_cap: np.ndarray,
         cap_side: np.ndarray,
-        point_key: np.ndarray,
+        attributes: Attributes,
     ) -> Surface:
         """A surface that a cut made, taken as it is."""
         surface = cls.__new__(cls)
-        surface.points, surface.triangles, surface.uvs, surface.normals = points, triangles, uvs, normals
-        surface.triangle_cap, surface.cap_side, surface.point_key = triangle_cap, cap_side, point_key
+        surface.points, surface.triangles, surface.point_site = points, triangles, point_site
+        surface.site_points, surface.site_key = points if point_site is None else sites, site_key
+        surface.uvs, surface.own_corner_uvs, surface.normals = uvs, own_corner_uvs, normals
+        surface.triangle_cap, surface.cap_side, surface.attributes = triangle_cap, cap_side, attributes
         surface._freeze()
         return surface
 
+    def _join_seams(self, tolerance: float) -> None:
+        """Find the sites of points; without seams each point is one."""
+        if tolerance < 0.0:
+            return
+        first = weld_seams(_spatial_mesh(self.points, self.triangles), tolerance, apart=self.site_key >= 0)
+        kept, site = np.unique(first, return_inverse=True)
+        if len(kept) == self.point_count:
+            return
+        corners = first[self.triangles]
+        if (corners == corners[:, :1]).all():
+            raise ValueError("all points of the surface's triangles coincide; there is no surface")
+        self._keep_triangles((corners != np.roll(corners, 1, axis=1)).all(axis=1))
+        self.points = self.points[first]
+        self.site_points, self.site_key = self.points[kept], self.site_key[kept]
+        self.point_site = site.reshape(-1)
+
+    def _keep_triangles(self, kept: np.ndarray) -> None:
+        """Leave out all triangles but some, a mask."""
+        if kept.all():
+            return
+        for name in ("triangles", "own_corner_uvs", "triangle_cap", "cap_side"):
+            values = getattr(self, name)
+            setattr(self, name, None if values is None else values[kept])
+        self.attributes = self.attributes.mapped(
+            point=lambda values: values, corner=lambda values: values[kept], triangle=lambda values: values[kept]
+        )
+
     def _freeze(self) -> None:
-        arrays = (self.points, self.triangles, self.uvs, self.normals)
-        for array in (*arrays, self.triangle_cap, self.cap_side, self.point_key):
+        arrays = (self.points, self.triangles, self.uvs, self.own_corner_uvs, self.normals, self.point_site)
+        for array in (*arrays, self.site_points, self.triangle_cap, self.cap_side, self.site_key):
             if array is not None:
                 array.setflags(write=False)
 
@@ -107,15 +165,59 @@ class Surface:
         return len(self.points)
 
     @property
+    def site_count(self) -> int:
+        """Number of sites: points, those along a seam counting as one."""
+        return len(self.site_points)
+
+    @property
     def triangle_count(self) -> int:
         """Number of triangles."""
         return len(self.triangles)
 
+    def with_data(self, data: Mapping[str, object] | None) -> Surface:
+        """The surface with other arrays of the user.
+
+        Args:
+            data: Arrays by name, as at construction; those of triangles and corners are of the triangles as they are.
+
+        Raises:
+            TypeError: If an array is not of numbers.
+            ValueError: If an array does not fit.
+        """
+        other = copy.copy(self)
+        other.attributes = Attributes.of(data, self.point_count, self.triangle_count)
+        return other
+
+    @property
+    def data(self) -> Mapping[str, np.ndarray]:
+        """The user's arrays as they are now, by name, read-only.
+
+        Arrays of floating point are interpolated along split edges; of whole numbers and flags a new point has that of
+        the nearest old one. Triangles pass theirs on to their parts. On caps, arrays of corners and triangles are zero.
+        """
+        return self.attributes.merged()
+
+    @cached_property
+    def site_triangles(self) -> np.ndarray:
+        """Sites of the triangles' corners, shape (triangle_count, 3)."""
+        return self.triangles if self.point_site is None else self.point_site[self.triangles]
+
+    @cached_property
+    def site_point(self) -> np.ndarray:
+        """The first point of each site, shape (site_count,)."""
+        if self.point_site is None:
+            return np.arange(self.point_count)
+        return np.unique(self.point_site, return_index=True)[1]
+
+    @property
+    def point_key(self) -> np.ndarray:
+        """``2 * wall + side`` of the wall on which each point lies, -1 inside, shape (point_count,)."""
+        return self.site_key if self.point_site is None else self.site_key[self.point_site]
+
     @cached_property
     def mesh(self) -> PolygonMesh:
-        """The triangles with their half-edges, in space; a flat mesh lies in the plane z = 0."""
-        start = np.arange(0, 3 * self.triangle_count + 1, 3)
-        return PolygonMesh(lifted(self.points), start, self.triangles.reshape(-1).astype(np.int64))
+        """The triangles of the sites with their half-edges, in space; a flat mesh lies in the plane z = 0."""
+        return _spatial_mesh(self.site_points, self.site_triangles)
 
     @property
     def triangle_key(self) -> np.ndarray:
@@ -131,14 +233,16 @@ class Surface:
         """Texture coordinates of the triangles' corners, shape (triangle_count, 3, 2).
 
         Caps have their own: lengths along the axes of the wall that they cap, so that a texture is not stretched on
-        them; the others have those of their points, or zeros without any.
+        them; the others have those that were given of corners or of points, or zeros without any.
 
         Args:
             walls: The cage's walls.
             scale: Texture coordinates a metre on caps [1/m].
         """
-        uvs = np.zeros((self.point_count, 2)) if self.uvs is None else self.uvs
-        corners = uvs[self.triangles]
+        corners = self.own_corner_uvs
+        if corners is None:
+            corners = (np.zeros((self.point_count, 2)) if self.uvs is None else self.uvs)[self.triangles]
+        corners = corners.copy()
         for number in np.unique(self.triangle_cap[self.triangle_cap >= 0]).tolist():
             cap, wall = self.triangle_cap == number, walls[number]
             corners[cap] = scale * ((self.points[self.triangles[cap]] - wall.origin) @ wall.axes.T)
@@ -185,48 +289,48 @@ class Surface:
         """Enclosed volume, meaningful if closed, in 2D the area of the triangles [m^d]."""
         return float((self.mesh.face_volume if self.dimension == 3 else self.mesh.face_area_vector[:, 2]).sum())
 
-    def directions_inward(self, points: np.ndarray) -> np.ndarray:
-        """Unit vectors from points into the solid around them, away from the skin and from every cap.
+    def directions_inward(self, sites: np.ndarray) -> np.ndarray:
+        """Unit vectors from sites into the solid around them, away from the skin and from every cap.
 
         Shape (n, dimension).
 
-        A point that lies on several cuts belongs to the piece into which this points. It is minus the sum of the
-        normals at the point, one for the skin and one for each wall, so that slivers do not matter. Where both sides of
+        A site that lies on several cuts belongs to the piece into which this points. It is minus the sum of the
+        normals at the site, one for the skin and one for each wall, so that slivers do not matter. Where both sides of
         a cut meet, at its front and at the borders of a knife's, theirs cancel.
 
         Args:
-            points: Point ids, shape (n,).
+            sites: Site ids, shape (n,).
         """
         if self.dimension == 2:
-            return self._directions_from_border(points)
-        row = np.full(self.point_count, -1)
-        row[points] = np.arange(len(points))
-        around, corner = np.nonzero(row[self.triangles] >= 0)
-        corners = self.points[self.triangles[around]]
+            return self._directions_from_border(sites)
+        row = np.full(self.site_count, -1)
+        row[sites] = np.arange(len(sites))
+        around, corner = np.nonzero(row[self.site_triangles] >= 0)
+        corners = self.site_points[self.site_triangles[around]]
         normal = triangle_normals(corners)
         labels, label = np.unique(self.triangle_cap[around], return_inverse=True)
-        sums, sizes = np.zeros((len(points), len(labels), 3)), np.zeros((len(points), len(labels)))
-        where = row[self.triangles[around, corner]], label
+        sums, sizes = np.zeros((len(sites), len(labels), 3)), np.zeros((len(sites), len(labels)))
+        where = row[self.site_triangles[around, corner]], label
         np.add.at(sums, where, normal)
         np.add.at(sizes, where, np.linalg.norm(normal, axis=1))
         sums[np.linalg.norm(sums, axis=2) <= _CANCELLED * sizes] = 0.0
         return units(-units(sums, least=_NO_LENGTH).sum(axis=1), least=_NO_LENGTH)
 
-    def _directions_from_border(self, points: np.ndarray) -> np.ndarray:
-        """The same for a flat mesh: minus the sum of the normals of the border's two edges at each point.
+    def _directions_from_border(self, sites: np.ndarray) -> np.ndarray:
+        """The same for a flat mesh: minus the sum of the normals of the border's two edges at each site.
 
         At the tip of a cut, where both edges are the two sides of it, they cancel.
         """
         mesh = self.mesh
         border = mesh.twin < 0
         start, end = mesh.face_vertex[border], mesh.destination[border]
-        along = units(self.points[end] - self.points[start], least=_NO_LENGTH)
+        along = units(self.site_points[end] - self.site_points[start], least=_NO_LENGTH)
         outward = along[:, ::-1] * [1.0, -1.0]
-        sums = np.zeros((self.point_count, 2))
+        sums = np.zeros((self.site_count, 2))
         for ends in (start, end):
             np.add.at(sums, ends, outward)
         sums[np.linalg.norm(sums, axis=1) <= _CANCELLED] = 0.0
-        return units(-sums[points], least=_NO_LENGTH)
+        return units(-sums[sites], least=_NO_LENGTH)
 
     @cached_property
     def triangle_solid(self) -> np.ndarray:
@@ -242,12 +346,18 @@ class Surface:
         inner = np.flatnonzero(~outward)
         if len(inner):
             first = np.unique(mesh.vertex_component, return_index=True)[1][inner]
-            triangles = self.triangles.astype(np.int64)
+            triangles = self.site_triangles.astype(np.int64)
             number = winding_numbers(mesh.vertices[first], mesh.vertices, triangles, mesh.face_component, len(volumes))
             around = np.where((number > 0.5) & outward, volumes, np.inf)
             found = np.isfinite(around).any(axis=1)
             solid[inner[found]] = around[found].argmin(axis=1)
         return solid[mesh.face_component]
+
+
+def _spatial_mesh(points: np.ndarray, triangles: np.ndarray) -> PolygonMesh:
+    """Triangles with their half-edges, in space."""
+    start = np.arange(0, 3 * len(triangles) + 1, 3)
+    return PolygonMesh(lifted(points), start, triangles.reshape(-1).astype(np.int64))
 
 
 def _check_flat(corners: np.ndarray, normals: np.ndarray | None) -> None:
@@ -275,6 +385,27 @@ def _as_point_values(values: np.ndarray | None, name: str, width: int, count: in
     if len(array) != count:
         raise ValueError(f"the surface has {count} points but {len(array)} {name}; give each one")
     return array
+
+
+def _as_uvs(
+    values: np.ndarray | None, point_count: int, triangle_count: int
+) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Texture coordinates of points, or of corners."""
+    if values is None or np.ndim(values) != 3:
+        return _as_point_values(values, "uvs", 2, point_count), None
+    if np.shape(values) != (triangle_count, 3, 2):
+        raise ValueError(
+            f"uvs of the corners of {triangle_count} triangles must have shape ({triangle_count}, 3, 2), got "
+            f"{np.shape(values)}"
+        )
+    return None, _as_rows(np.reshape(values, (-1, 2)), "uvs", (2,)).reshape(-1, 3, 2)
+
+
+def _as_weld(weld: float | None, points: np.ndarray) -> float:
+    """Distance up to which ends of open edges are joined [m]."""
+    if weld is None:
+        return WELD * float(np.ptp(points, axis=0).max(initial=0.0))
+    return as_number(weld, "weld of the surface")
 
 
 def _as_triangles(values: np.ndarray, point_count: int) -> np.ndarray:

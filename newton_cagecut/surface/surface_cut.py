@@ -28,9 +28,9 @@ class SurfaceEdit:
     surface: Surface
     """The surface after the step."""
     created: np.ndarray
-    """Ids of the points that are new, shape (created_count,)."""
+    """Ids of the sites that are new, shape (created_count,)."""
     moved: np.ndarray
-    """Ids of the points that have moved or changed sides, shape (moved_count,)."""
+    """Ids of the sites that have moved or changed sides, shape (moved_count,)."""
 
     @property
     def is_empty(self) -> bool:
@@ -51,7 +51,7 @@ class SurfaceCutState:
     reach: float = -np.inf
     """Coordinate s up to which the strip is open [m]."""
     tips: np.ndarray | None = None
-    """Points at the tips, shape (tip_count,); None before there are some."""
+    """Sites at the tips, shape (tip_count,); None before there are some."""
     tip_wall: int = -1
     """Wall of the cut's sides that meet at the tips."""
 
@@ -184,7 +184,7 @@ class SurfaceCut:
             tips = opening.vertices.numbering.tip[opening.vertices.tip_chords]
             opened = open_surface(strip.base, opening, strip.wall)
             after = replace(after, surface=opened, tips=tips, tip_wall=strip.wall)
-        created, moved = _changed_points(before, after.surface)
+        created, moved = _changed_sites(before, after.surface)
         if len(created) == len(moved) == 0:
             after = replace(after, surface=before)
         self._state = after
@@ -213,22 +213,23 @@ class SurfaceCut:
         return self.surface
 
 
-def _changed_points(before: Surface, after: Surface) -> tuple[np.ndarray, np.ndarray]:
-    """Points that are new, and those that have moved or changed sides."""
-    common = before.point_count
-    differs = (before.points != after.points[:common]).any(axis=1) | (before.point_key != after.point_key[:common])
-    return np.arange(common, after.point_count), np.flatnonzero(differs)
+def _changed_sites(before: Surface, after: Surface) -> tuple[np.ndarray, np.ndarray]:
+    """Sites that are new, and those that have moved or changed sides."""
+    common = before.site_count
+    differs = (before.site_points != after.site_points[:common]).any(axis=1)
+    differs |= before.site_key != after.site_key[:common]
+    return np.arange(common, after.site_count), np.flatnonzero(differs)
 
 
 def _find_hinge(now: SurfaceCutState, surface: Surface) -> Hinge:
     """The front of a cut in a surface that others may have cut since."""
-    key, count = surface.triangle_key, surface.point_count
+    key, count = surface.triangle_key, surface.site_count
     on_front = np.zeros(count, dtype=bool)
     if now.tips is not None:
         on_front[now.tips] = True
     shared = np.ones(count, dtype=bool)
     for side in (0, 1):
-        shared &= np.isin(np.arange(count), surface.triangles[key == 2 * now.tip_wall + side])
+        shared &= np.isin(np.arange(count), surface.site_triangles[key == 2 * now.tip_wall + side])
     candidates = np.flatnonzero(shared)
     s = now.strip.plane.coordinates(surface.mesh.vertices[candidates])[:, 1]
     on_front[candidates[np.abs(s - now.reach) <= now.strip.strip.tolerance]] = True

@@ -61,7 +61,7 @@ class SurfaceStrip:
         plane = plane.in_space()
         offset = np.zeros(3) if offset is None else offset
         ahead = float(plane.coordinates((plane.origin + offset)[None])[0, 1])
-        size = np.ptp(surface.points, axis=0).max()
+        size = np.ptp(surface.site_points, axis=0).max()
         strip = Strip.of_polygons(
             surface.mesh,
             replace(plane, origin=plane.origin + offset),

@@ -7,6 +7,7 @@ from .body_frame import BodyFrame
 from .layers import checked_path
 from .mesh_data import MeshData, check_mesh, turn_up
 from .read import read_cage, read_mesh, read_meshes, read_surface
+from .scene_frame import SceneFrame, SceneShape
 from .validate import validate_animation
 from .write import write_cage, write_mesh
 
@@ -14,6 +15,8 @@ __all__ = [
     "AnimationWriter",
     "BodyFrame",
     "MeshData",
+    "SceneFrame",
+    "SceneShape",
     "check_mesh",
     "checked_path",
     "read_cage",

@@ -27,10 +27,16 @@ class BodyFrame:
             ``None``: all skin.
         rest_points: Vertices of the surface at rest [m], shape ``(n, 3)``, which tell the two sides of a cut apart
             however far they have come. ``None``: ``points`` tell them. Read when the triangles change.
+        velocities: Velocities of the points [m/s], shape ``(n, 3)``, for motion blur, or ``None``.
+        uvs: Texture coordinates of the triangles' corners, shape ``(m, 3, 2)``, or ``None``. Read when the triangles
+            change.
+        has_skin_uvs: Whether those of the skin mean anything; only those of the caps are written otherwise.
         cage_points: Vertices of the cage [m], shape ``(k, 3)``, or ``None`` for no cage.
         cage_faces: Polygons of the cage, or the segments of a plane one.
         skin_color: Linear RGB of the skin. Read at the first frame of the body.
         cap_color: Linear RGB of the caps. Read at the first frame of the body.
+        skin_texture: A picture file that the skin's texture coordinates lay over it. Read at the first frame.
+        cap_texture: The same for the caps.
     """
 
     name: str
@@ -38,10 +44,15 @@ class BodyFrame:
     triangles: np.ndarray
     triangle_cap: np.ndarray | None = None
     rest_points: np.ndarray | None = None
+    velocities: np.ndarray | None = None
+    uvs: np.ndarray | None = None
+    has_skin_uvs: bool = True
     cage_points: np.ndarray | None = None
     cage_faces: Sequence[Sequence[int]] = ()
     skin_color: tuple[float, float, float] = (0.83, 0.30, 0.10)
     cap_color: tuple[float, float, float] = (0.95, 0.72, 0.52)
+    skin_texture: str | None = None
+    cap_texture: str | None = None
 
     @property
     def has_plane_cage(self) -> bool:
@@ -62,9 +73,11 @@ class BodyFrame:
         cap = np.full(len(triangles), -1) if self.triangle_cap is None else np.asarray(self.triangle_cap)
         if cap.shape != (len(triangles),):
             raise ValueError(f"body {self.name}: triangle_cap must have shape ({len(triangles)},), got {cap.shape}")
-        rest_points = points if self.rest_points is None else self._rows("rest_points")
-        if len(rest_points) != len(points):
-            raise ValueError(f"body {self.name}: rest_points must have shape {points.shape}, got {rest_points.shape}")
+        rest_points = points if self.rest_points is None else self._like_points("rest_points", points)
+        velocities = None if self.velocities is None else self._like_points("velocities", points)
+        uvs = None if self.uvs is None else np.asarray(self.uvs, dtype=np.float64)
+        if uvs is not None and uvs.shape != (len(triangles), 3, 2):
+            raise ValueError(f"body {self.name}: uvs must have shape ({len(triangles)}, 3, 2), got {uvs.shape}")
         cage_points = self.cage_points
         if cage_points is not None:
             cage_points = self._rows("cage_points")
@@ -73,7 +86,14 @@ class BodyFrame:
             else:
                 check_mesh(f"the cage of body {self.name}", cage_points, *flat_faces(self.cage_faces))
         surface = {"points": points, "triangles": triangles, "triangle_cap": cap, "rest_points": rest_points}
-        return replace(self, **surface, cage_points=cage_points)
+        return replace(self, **surface, velocities=velocities, uvs=uvs, cage_points=cage_points)
+
+    def _like_points(self, name: str, points: np.ndarray) -> np.ndarray:
+        """Return an array that has a row for each point."""
+        rows = self._rows(name)
+        if len(rows) != len(points):
+            raise ValueError(f"body {self.name}: {name} must have shape {points.shape}, got {rows.shape}")
+        return rows
 
     def _rows(self, name: str) -> np.ndarray:
         """Return one of the arrays of points as float64, shape ``(n, 3)``."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""Stages in memory that are written to a file in one move, and the values that USD takes."""
+"""Stages in memory or in files, written so that a file is whole at any time, and the values that USD takes."""
 
 from __future__ import annotations
 
@@ -48,15 +48,52 @@ def new_stage(up_axis: str, meters_per_unit: float) -> Usd.Stage:
     Raises:
         ValueError: The up axis is neither Y nor Z, or the unit is not a positive number.
     """
+    _check_metrics(up_axis, meters_per_unit)
+    return _with_metrics(Usd.Stage.CreateInMemory(), up_axis, meters_per_unit)
+
+
+def new_file_stage(path: str, up_axis: str, meters_per_unit: float) -> Usd.Stage:
+    """Return such a stage for a file, which stays as it is until :func:`save_stage`.
+
+    A layer of this file that is open is emptied and used.
+
+    Raises:
+        ValueError: As in :func:`new_stage`.
+    """
+    _check_metrics(up_axis, meters_per_unit)
+    layer = Sdf.Layer.Find(path)
+    if layer is None:
+        layer = Sdf.Layer.New(Sdf.FileFormat.FindByExtension(path), path)
+    layer.Clear()
+    return _with_metrics(Usd.Stage.Open(layer), up_axis, meters_per_unit)
+
+
+def _check_metrics(up_axis: str, meters_per_unit: float) -> None:
     if up_axis not in ("Y", "Z"):
         raise ValueError(f'up_axis must be "Y" or "Z", got {up_axis!r}')
     if not (math.isfinite(meters_per_unit) and meters_per_unit > 0.0):
         raise ValueError(f"meters_per_unit must be positive, got {meters_per_unit}")
-    stage = Usd.Stage.CreateInMemory()
+
+
+def _with_metrics(stage: Usd.Stage, up_axis: str, meters_per_unit: float) -> Usd.Stage:
     UsdGeom.SetStageUpAxis(stage, up_axis)
     UsdGeom.SetStageMetersPerUnit(stage, meters_per_unit)
     stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/World").GetPrim())
     return stage
+
+
+def save_stage(stage: Usd.Stage, path: str) -> None:
+    """Write what is new in a stage to its file; binary ones only grow, and point to what is new at the very end.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    try:
+        saved = stage.GetRootLayer().Save()
+    except Tf.ErrorException as error:
+        raise OSError(f"{path} cannot be written: {error}") from error
+    if not saved:
+        raise OSError(f"{path} cannot be written")
 
 
 def export_stage(stage: Usd.Stage, path: str) -> None:

@@ -4,9 +4,13 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from ..geometry import triangle_normals
+
+_LEVELS = 256  # of each of the two coordinates of a direction: at most 1 degree off, 0.34 in the mean
 
 
 def split_caps(
@@ -53,3 +57,32 @@ def vertex_normals(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     length = np.linalg.norm(total, axis=1, keepdims=True)
     up = np.array([0.0, 0.0, 1.0])  # of a vertex without triangles that have an area
     return np.where(length > 0.0, total / np.where(length > 0.0, length, 1.0), up).astype(np.float32)
+
+
+@cache
+def direction_table() -> np.ndarray:
+    """Directions all over the sphere, shape ``(65536, 3)``, float32: a grid on an octahedron that is folded open."""
+    x, y = np.meshgrid(np.linspace(-1.0, 1.0, _LEVELS), np.linspace(-1.0, 1.0, _LEVELS), indexing="ij")
+    z = 1.0 - np.abs(x) - np.abs(y)
+    x, y = np.where(z < 0.0, _folded(x, y), x), np.where(z < 0.0, _folded(y, x), y)
+    table = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+    table = (table / np.linalg.norm(table, axis=1, keepdims=True)).astype(np.float32)
+    table.setflags(write=False)
+    return table
+
+
+def direction_numbers(normals: np.ndarray) -> np.ndarray:
+    """Return rows of :func:`direction_table` that are nearly some unit vectors, shape ``(n,)``.
+
+    Args:
+        normals: Unit vectors, shape ``(n, 3)``.
+    """
+    x, y, z = (normals / np.abs(normals).sum(axis=1, keepdims=True)).T
+    x, y = np.where(z < 0.0, _folded(x, y), x), np.where(z < 0.0, _folded(y, x), y)
+    row, column = (np.rint((value + 1.0) * (0.5 * (_LEVELS - 1))).astype(np.int32) for value in (x, y))
+    return row * _LEVELS + column
+
+
+def _folded(value: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """A coordinate of the lower half of the octahedron, which is folded out over the upper one's edges."""
+    return (1.0 - np.abs(other)) * np.where(value >= 0.0, 1.0, -1.0)

@@ -44,7 +44,7 @@ def read_mesh(
         FileNotFoundError: There is no such file.
         ValueError: The file is no USD, the mesh cannot be told, or it is empty or invalid.
     """
-    stage = _open_stage(source)
+    stage = open_stage(source)
     prim = _find_prim(stage, prim_path, UsdGeom.Mesh)
     mesh = _read_prim(prim, up_axis)
     if mesh.corner_uvs is not None:
@@ -70,7 +70,7 @@ def read_meshes(
         FileNotFoundError: There is no such file.
         ValueError: The file is no USD, it has no such prim, or a mesh is empty or invalid.
     """
-    stage = _open_stage(source)
+    stage = open_stage(source)
     return [_read_prim(prim, up_axis) for prim in _prims(stage, prim_path, UsdGeom.Mesh)]
 
 
@@ -95,7 +95,7 @@ def read_cage(
         FileNotFoundError: There is no such file.
         ValueError: As in :func:`read_mesh`, or the mesh or the curves are no valid cage.
     """
-    stage = _open_stage(source)
+    stage = open_stage(source)
     if _prims(stage, prim_path, UsdGeom.Mesh) or not _prims(stage, prim_path, UsdGeom.BasisCurves):
         mesh = read_mesh(stage, prim_path, up_axis=up_axis)
         return Cage(mesh.points, mesh.faces, **options)
@@ -146,7 +146,7 @@ def _counterclockwise(points: np.ndarray, loops: np.ndarray) -> np.ndarray:
     return loops[:, ::-1] if (ax * by - ay * bx).sum() < 0.0 else loops
 
 
-def _open_stage(source: str | PathLike | Usd.Stage) -> Usd.Stage:
+def open_stage(source: str | PathLike | Usd.Stage) -> Usd.Stage:
     """Open a file, with errors of Python in the place of USD's."""
     if isinstance(source, Usd.Stage):
         return source

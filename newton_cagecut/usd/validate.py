@@ -39,14 +39,19 @@ def _stage_problems(stage: Usd.Stage) -> list[str]:
     problems = []
     if not UsdGeom.StageHasAuthoredMetersPerUnit(stage):
         problems.append("metersPerUnit is not set")
-    for key in ("upAxis", "timeCodesPerSecond", "startTimeCode", "endTimeCode"):
-        if not stage.HasAuthoredMetadata(key):
-            problems.append(f"{key} is not set")
+    timed = ("timeCodesPerSecond", "startTimeCode", "endTimeCode") if _is_animated(stage) else ()
+    problems += [f"{key} is not set" for key in ("upAxis", *timed) if not stage.HasAuthoredMetadata(key)]
     if not stage.GetDefaultPrim():
         problems.append("defaultPrim is not set")
     if stage.GetEndTimeCode() < stage.GetStartTimeCode():
         problems.append("endTimeCode is before startTimeCode")
     return problems
+
+
+def _is_animated(stage: Usd.Stage) -> bool:
+    """Return whether something has samples in time."""
+    prims = stage.Traverse(Usd.TraverseInstanceProxies())
+    return any(attribute.GetNumTimeSamples() for prim in prims for attribute in prim.GetAttributes())
 
 
 def _times(stage: Usd.Stage, prim: Usd.Prim) -> list[float]:
@@ -62,7 +67,8 @@ def _mesh_problems(mesh: UsdGeom.Mesh, time: float) -> list[str]:
     points = points_at(mesh, time)
     counts = mesh.GetFaceVertexCountsAttr().Get(time) or []
     indices = mesh.GetFaceVertexIndicesAttr().Get(time) or []
-    if len(points) == 0 or len(counts) == 0:
+    empty = len(points) == len(counts) == len(indices) == 0 and mesh.GetPointsAttr().GetNumTimeSamples() > 1
+    if not empty and (len(points) == 0 or len(counts) == 0):
         return ["it has no points or no faces"]
     valid, reason = UsdGeom.Mesh.ValidateTopology(indices, counts, len(points))
     problems = [] if valid else [reason]
@@ -80,10 +86,11 @@ def _mesh_problems(mesh: UsdGeom.Mesh, time: float) -> list[str]:
 
 
 def _curve_problems(curves: UsdGeom.BasisCurves, time: float) -> list[str]:
-    """Return what is wrong with periodic curves at one time."""
+    """Return what is wrong with curves at one time."""
     points = points_at(curves, time)
     sizes = np.array(curves.GetCurveVertexCountsAttr().Get(time) or [], dtype=np.int64)
-    if len(points) == 0 or sizes.sum() != len(points) or sizes.min() < 3:
+    least = 3 if curves.GetWrapAttr().Get() == UsdGeom.Tokens.periodic else 2
+    if len(points) == 0 or sizes.sum() != len(points) or sizes.min() < least:
         return [f"curves of {sizes.tolist()} points do not go round {len(points)} points"]
     if not np.isfinite(points).all():
         return ["points are not finite"]

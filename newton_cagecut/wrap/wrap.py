@@ -55,7 +55,7 @@ def wrap_cage(points: np.ndarray, triangles: np.ndarray, face_count: int = 60, *
         TypeError: Something is not a number, or not an integer.
         ValueError: The mesh is no mesh, an argument is out of its range, or no cage was found; the text says which.
     """
-    surface = Surface(points, triangles)
+    surface = Surface(points, triangles, weld=-1.0)
     face_count, offset = checked_face_count(face_count), checked_offset(offset)
     import_meshlab()
     used, corner = np.unique(surface.triangles, return_inverse=True)

@@ -12,6 +12,21 @@ from __future__ import annotations
 import warp as wp
 
 from ..arrays import BodyArrays
+from .scheme import Stage
+
+
+@wp.struct
+class StageFactors:
+    """A ``Stage`` for kernels; see ``scheme.py``."""
+
+    scale: wp.float64
+    target_velocity: wp.float64
+    target_reached: wp.float64
+    velocity_kept: wp.float64
+    velocity_reached: wp.float64
+    force_share: wp.float64
+    damping_share: wp.float64
+    start_share: wp.float64
 
 
 @wp.struct
@@ -44,8 +59,6 @@ class StageArrays:
     """Mass matrix times the places in the piece [kg m]."""
     momentum: wp.array[wp.vec3d]
     """Mass matrix times ``target``, and the impulse [kg m]."""
-    force: wp.array[wp.vec3]
-    """The residual without the quadrature's part [kg m]."""
     product: wp.array[wp.vec3]
     """The matrix without the quadrature's part, times the change of the solution [kg m]."""
     position_out: wp.array[wp.vec3]
@@ -78,6 +91,14 @@ class PieceArrays:
     """Part of the solution that is taken; before, how far the stress at the start is trusted; in [0, 1]."""
 
 
+def make_stage_factors(stage: Stage) -> StageFactors:
+    """The factors of a stage."""
+    factors = StageFactors()
+    for name, value in stage._asdict().items():
+        setattr(factors, name, value)
+    return factors
+
+
 def make_stage_arrays(body: BodyArrays) -> StageArrays:
     """Scratch for the stages of a body."""
     stage, capacity = StageArrays(), body.rest.shape[0]
@@ -85,7 +106,7 @@ def make_stage_arrays(body: BodyArrays) -> StageArrays:
         for name in ("velocity", "reached", "target", "impulse", "load", "guess", "moved", "inertia", "momentum"):
             setattr(stage, name, wp.zeros(capacity, dtype=wp.vec3d))
         stage.row_mass = wp.zeros(capacity, dtype=wp.float64)
-        for name in ("start", "moved_single", "earlier_velocity", "force", "product", "position_out", "velocity_out"):
+        for name in ("start", "moved_single", "earlier_velocity", "product", "position_out", "velocity_out"):
             setattr(stage, name, wp.zeros(capacity, dtype=wp.vec3))
     return stage
 

@@ -7,10 +7,28 @@ from __future__ import annotations
 
 import warp as wp
 
-from ..arrays import BodyArrays, LinearSystem, StepArrays
+from ..arrays import (
+    DAMPING,
+    DAMPING_SHARE,
+    ELASTIC_FORCE,
+    ELASTIC_STIFFNESS,
+    FORCE,
+    STAGE_TIME,
+    START_SHARE,
+    STIFFNESS,
+    TARGET_REACHED,
+    TARGET_VELOCITY,
+    TIME_STEP,
+    VELOCITY_KEPT,
+    VELOCITY_REACHED,
+    BodyArrays,
+    LinearSystem,
+    StepArrays,
+    matrix_of,
+    put_matrix,
+)
 from ..step_kernels import tie
-from ..stiffness import vertex_block
-from .stage_arrays import PieceArrays, StageArrays
+from .stage_arrays import PieceArrays, StageArrays, StageFactors
 from .step_record import BAD_FORCE, BAD_RESULT, BAD_START, StepRecord
 
 wp.set_module_options({"enable_backward": False})
@@ -32,6 +50,7 @@ def confined(v: wp.vec3d, body: BodyArrays) -> wp.vec3d:
 
 @wp.kernel(enable_backward=False)
 def begin_stages(
+    dt: wp.float64,
     positions: wp.array[wp.vec3],
     velocities: wp.array[wp.vec3],
     gravity: wp.array[wp.vec3],
@@ -43,8 +62,10 @@ def begin_stages(
 ):
     """Where a step starts from."""
     i = wp.tid()
-    velocity = wp.vec3d()
+    velocity, load = wp.vec3d(), wp.vec3d()
     row_mass = wp.float64(0.0)
+    if i == 0:
+        step.scales[TIME_STEP] = dt
     if i < body.vertex_count[0]:
         if not (is_finite(positions[i]) and is_finite(velocities[i])):
             wp.atomic_max(record.reason, 0, BAD_START)
@@ -54,7 +75,9 @@ def begin_stages(
             velocity = confined(wp.vec3d(velocities[i]), body)
         for j in range(body.vertex_count[0]):
             row_mass += wp.float64(body.mass[i, j])
+        load = confined(row_mass * wp.vec3d(gravity[0]) + wp.vec3d(forces[i]), body)
     stage.row_mass[i] = row_mass
+    stage.load[i] = load
     stage.start[i] = positions[i]
     stage.velocity[i] = velocity
     stage.reached[i] = wp.vec3d()
@@ -63,40 +86,35 @@ def begin_stages(
 
 
 @wp.kernel(enable_backward=False)
-def set_scales(
-    scale: wp.float64, damping_share: wp.float64, start_share: wp.float64, body: BodyArrays, step: StepArrays
-):
+def set_scales(factors: StageFactors, body: BodyArrays, step: StepArrays):
     """The factors of a stage; see ``Stage``."""
-    damping = damping_share * body.material[0][2]
-    step.scales[0] = scale * scale
-    step.scales[1] = scale * (scale + damping)
-    step.scales[2] = damping / (scale + damping)
-    step.scales[3] = start_share
+    dt = step.scales[TIME_STEP]
+    scale = factors.scale * dt
+    damping = factors.damping_share * body.material[0][2]
+    step.scales[STAGE_TIME] = scale
+    step.scales[FORCE] = factors.force_share * scale * scale
+    step.scales[STIFFNESS] = factors.force_share * scale * scale
+    step.scales[DAMPING] = factors.force_share * scale
+    step.scales[ELASTIC_FORCE] = scale * scale
+    step.scales[ELASTIC_STIFFNESS] = scale * (scale + damping)
+    step.scales[DAMPING_SHARE] = damping / (scale + damping)
+    step.scales[START_SHARE] = factors.start_share
+    step.scales[TARGET_VELOCITY] = factors.target_velocity * dt
+    step.scales[TARGET_REACHED] = factors.target_reached
+    step.scales[VELOCITY_KEPT] = factors.velocity_kept
+    step.scales[VELOCITY_REACHED] = factors.velocity_reached / dt
 
 
 @wp.kernel(enable_backward=False)
-def begin_stage(
-    target_velocity: wp.float64,
-    target_reached: wp.float64,
-    velocity_kept: wp.float64,
-    velocity_reached: wp.float64,
-    force_scale: wp.float64,
-    gravity: wp.array[wp.vec3],
-    forces: wp.array[wp.vec3],
-    body: BodyArrays,
-    stage: StageArrays,
-):
+def begin_stage(body: BodyArrays, step: StepArrays, stage: StageArrays):
     """Targets of a stage, and the impulses of its loads."""
     i = wp.tid()
     target, earlier, impulse = wp.vec3d(), wp.vec3d(), wp.vec3d()
     if i < body.vertex_count[0]:
         v, reached = stage.velocity[i], stage.reached[i]
-        target = target_velocity * v + target_reached * reached
-        earlier = velocity_kept * v + velocity_reached * reached
-        weight = stage.row_mass[i] * wp.vec3d(gravity[0])
-        load = confined(weight + wp.vec3d(forces[i]), body)
-        impulse = force_scale * load
-        stage.load[i] = load
+        target = step.scales[TARGET_VELOCITY] * v + step.scales[TARGET_REACHED] * reached
+        earlier = step.scales[VELOCITY_KEPT] * v + step.scales[VELOCITY_REACHED] * reached
+        impulse = step.scales[FORCE] * stage.load[i]
     stage.target[i] = target
     stage.earlier_velocity[i] = wp.vec3(earlier)
     stage.impulse[i] = impulse
@@ -110,7 +128,7 @@ def turn_strain(body: BodyArrays, step: StepArrays, pieces: PieceArrays):
     stiffness = step.stiffnesses[q]
     stiffness.left = R * stiffness.left
     step.stiffnesses[q] = stiffness
-    step.tensions[q] = R * step.tensions[q]
+    put_matrix(step.tensions, q, R * matrix_of(step.tensions, q))
 
 
 @wp.kernel(enable_backward=False)
@@ -120,43 +138,24 @@ def show_moved(body: BodyArrays, step: StepArrays, stage: StageArrays, system: L
     moved = wp.vec3d(stage.moved[i])
     stage.moved_single[i] = wp.vec3(moved)
     step.displacement[i] = wp.vec3(wp.vec3d(stage.start[i]) - wp.vec3d(body.rest[i]) + moved)
-    step.predicted[i] = wp.vec3(step.scales[2] * (moved - stage.guess[i]))
+    step.predicted[i] = wp.vec3(step.scales[DAMPING_SHARE] * (moved - stage.guess[i]))
     system.solution[i] = wp.vec3()
 
 
 @wp.kernel(enable_backward=False)
 def find_inertial_residual(body: BodyArrays, step: StepArrays, stage: StageArrays, system: LinearSystem):
-    """Residual and diagonal blocks without the quadrature's part."""
+    """The residual without the quadrature's part."""
     i = wp.tid()
     r = wp.vec3d()
-    block = wp.identity(3, dtype=float)
     if i < body.vertex_count[0]:
         r += stage.impulse[i]
         for j in range(body.vertex_count[0]):
             r += wp.float64(body.mass[i, j]) * (stage.target[j] - stage.moved[j])
-        block = body.mass[i, i] * block
         if body.stabilizing_stiffness[i, i] > 0.0:
             mu = body.material[0][0]
-            r -= mu * step.scales[0] * wp.vec3d(tie(i, step.displacement, body))
-            r -= mu * step.scales[1] * wp.vec3d(tie(i, step.predicted, body))
-            ties = float(mu * step.scales[1]) * body.stabilizing_stiffness[i, i]
-            block += ties * wp.identity(3, dtype=float)
+            r -= mu * step.scales[ELASTIC_FORCE] * wp.vec3d(tie(i, step.displacement, body))
+            r -= mu * step.scales[ELASTIC_STIFFNESS] * wp.vec3d(tie(i, step.predicted, body))
     system.residual[i] = wp.vec3(r)
-    system.blocks[i] = block
-
-
-@wp.kernel(enable_backward=False)
-def add_elastic_residual(body: BodyArrays, step: StepArrays, stage: StageArrays, system: LinearSystem):
-    """Add the quadrature's part, and keep the residual without it."""
-    i = wp.tid()
-    r, block = wp.vec3(system.residual[i]), wp.mat33(system.blocks[i])
-    stage.force[i] = r
-    if i < body.vertex_count[0]:
-        for q in range(body.volumes.shape[0]):
-            r -= step.tensions[q] * body.gradients[q, i]
-            block += vertex_block(step.stiffnesses[q], body.gradients[q, i])
-    system.residual[i] = wp.vec3(confined(wp.vec3d(r), body))
-    system.blocks[i] = block
 
 
 @wp.kernel(enable_backward=False)
@@ -168,7 +167,7 @@ def multiply_inertia(body: BodyArrays, step: StepArrays, stage: StageArrays, sys
         for j in range(body.vertex_count[0]):
             result += body.mass[i, j] * system.solution[j]
         if body.stabilizing_stiffness[i, i] > 0.0:
-            result += float(body.material[0][0] * step.scales[1]) * tie(i, system.solution, body)
+            result += float(body.material[0][0] * step.scales[ELASTIC_STIFFNESS]) * tie(i, system.solution, body)
     stage.product[i] = result
 
 
@@ -195,9 +194,9 @@ def end_stage(body: BodyArrays, step: StepArrays, stage: StageArrays):
 
 @wp.kernel(enable_backward=False)
 def end_stages(
-    scale: wp.float64,
     velocities: wp.array[wp.vec3],
     body: BodyArrays,
+    step: StepArrays,
     stage: StageArrays,
     record: StepRecord,
 ):
@@ -209,7 +208,7 @@ def end_stages(
             velocity = wp.vec3()
         else:
             moved = stage.moved[i]
-            velocity = wp.vec3(confined(moved / scale - wp.vec3d(stage.earlier_velocity[i]), body))
+            velocity = wp.vec3(confined(moved / step.scales[STAGE_TIME] - wp.vec3d(stage.earlier_velocity[i]), body))
             place = wp.vec3d(position) + moved
             if body.normal.shape[0] > 0:
                 normal = body.normal[0]

@@ -9,11 +9,12 @@ the strain as far as that can be trusted, and otherwise from the motion: those t
 loads and with the angular velocity that it has. Both agree where a body is stiff and moves as one.
 """
 
-from __future__ import annotations
+import functools
 
 import warp as wp
 
-from ..arrays import BodyArrays, StepArrays
+from ..arrays import ELASTIC_FORCE, START_SHARE, BodyArrays, StepArrays
+from ..solve.lanes import lane_struct, make_scatter
 from ..step_kernels import tie
 from .rigid_fit import place_of
 from .stage_arrays import PieceArrays, StageArrays
@@ -87,37 +88,42 @@ def fit_accelerations(body: BodyArrays, step: StepArrays, stage: StageArrays, pi
     material = body.material[0]
     size = wp.sqrt(wp.max(trace, wp.float64(0.0)) / pieces.mass[p])
     trust = wp.float64(1.0)
-    resolved = wp.length_sq(velocity) * step.scales[0] < wp.float64(1.0)
+    resolved = wp.length_sq(velocity) * step.scales[ELASTIC_FORCE] < wp.float64(1.0)
     if size > wp.float64(0.0) and resolved:
         stress = (material[1] + wp.float64(2.0) * material[0]) * _ROUNDING * (reach + size) / size
-        change = wp.float64(3.0) * step.scales[0] * stress / (material[3] * size * size)
+        change = wp.float64(3.0) * step.scales[ELASTIC_FORCE] * stress / (material[3] * size * size)
         trust = wp.min(wp.float64(1.0), _TRUSTED / wp.max(change, wp.float64(1.0e-30)))
     pieces.factor[p] = trust
 
 
-@wp.kernel(enable_backward=False)
-def add_start_forces(body: BodyArrays, step: StepArrays, stage: StageArrays, pieces: PieceArrays):
-    """Add the forces at the start, times the square of the stage's scale, to the impulse."""
-    i = wp.tid()
-    if i >= body.vertex_count[0] or step.scales[3] == wp.float64(0.0):
-        return
-    p = body.piece[i]
-    omega, alpha = pieces.spin[p], pieces.spin_rate[p]
-    rigid = -stage.load[i]
-    for j in range(body.vertex_count[0]):
-        if body.piece[j] == p:
-            place = place_of(j, stage) - pieces.center[p]
-            turned = wp.cross(alpha, place) + wp.cross(omega, wp.cross(omega, place))
-            rigid += wp.float64(body.mass[i, j]) * (pieces.shift[p] + turned)
-    rigid = step.scales[0] * rigid
-    internal = wp.vec3d()
-    for q in range(body.volumes.shape[0]):
-        internal -= wp.vec3d(step.tensions[q] * body.gradients[q, i])
-    if body.stabilizing_stiffness[i, i] > 0.0:
-        stiffness = body.material[0][0] * step.scales[0]
-        internal -= stiffness * wp.vec3d(tie(i, step.displacement, body))
-    if body.normal.shape[0] > 0:
-        internal -= wp.dot(body.normal[0], internal) * body.normal[0]
-    trust = pieces.factor[p]
-    force = trust * internal + (wp.float64(1.0) - trust) * rigid
-    stage.impulse[i] = stage.impulse[i] + step.scales[3] * force
+@functools.cache
+def make_start_kernel(width: int) -> wp.Kernel:
+    """The kernel that adds the forces at the start to the impulse, for one width of lanes."""
+    Lanes, scatter = lane_struct(width), make_scatter(width)
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def add_start_forces(body: BodyArrays, step: StepArrays, stage: StageArrays, pieces: PieceArrays, lanes: Lanes):
+        """Add the forces at the start, times the square of the stage's scale, to the impulse."""
+        i = wp.tid()
+        if i >= body.vertex_count[0] or step.scales[START_SHARE] == wp.float64(0.0):
+            return
+        p = body.piece[i]
+        omega, alpha = pieces.spin[p], pieces.spin_rate[p]
+        rigid = -stage.load[i]
+        for j in range(body.vertex_count[0]):
+            if body.piece[j] == p:
+                place = place_of(j, stage) - pieces.center[p]
+                turned = wp.cross(alpha, place) + wp.cross(omega, wp.cross(omega, place))
+                rigid += wp.float64(body.mass[i, j]) * (pieces.shift[p] + turned)
+        rigid = step.scales[ELASTIC_FORCE] * rigid
+        internal = -wp.vec3d(scatter(i, lanes))
+        if body.stabilizing_stiffness[i, i] > 0.0:
+            stiffness = body.material[0][0] * step.scales[ELASTIC_FORCE]
+            internal -= stiffness * wp.vec3d(tie(i, step.displacement, body))
+        if body.normal.shape[0] > 0:
+            internal -= wp.dot(body.normal[0], internal) * body.normal[0]
+        trust = pieces.factor[p]
+        force = trust * internal + (wp.float64(1.0) - trust) * rigid
+        stage.impulse[i] = stage.impulse[i] + step.scales[START_SHARE] * force
+
+    return add_start_forces

@@ -13,8 +13,7 @@ from __future__ import annotations
 
 import warp as wp
 
-from ..arrays import BodyArrays, StepArrays
-from ..step_kernels import gather
+from ..arrays import TIME_STEP, BodyArrays, StepArrays, matrix_of
 from .rigid_fit import place_of
 from .stage_arrays import PieceArrays, StageArrays
 from .start_forces import turning
@@ -70,11 +69,12 @@ def find_relative(body: BodyArrays, step: StepArrays, stage: StageArrays, pieces
 
 
 @wp.kernel(enable_backward=False)
-def find_changes(dt: float, body: BodyArrays, step: StepArrays):
+def find_changes(body: BodyArrays, step: StepArrays):
     """Size of the change of F at each quadrature point in this step, beside rotation."""
     q = wp.tid()
-    change = gather(q, step.predicted, body)
-    step.rates[q] = wp.where(body.volumes[q] > 0.0, dt * wp.sqrt(wp.ddot(change, change)), 0.0)
+    change = matrix_of(step.drift, q)
+    size = float(step.scales[TIME_STEP]) * wp.sqrt(wp.ddot(change, change))
+    step.rates[q] = wp.where(body.volumes[q] > 0.0, size, 0.0)
 
 
 @wp.kernel(enable_backward=False)

@@ -8,6 +8,8 @@ from __future__ import annotations
 import numpy as np
 import warp as wp
 
+from ..solve.stiffness_matrix import DenseMatrix
+
 BAD_FORCE, BAD_START, BAD_RESULT = wp.constant(1), wp.constant(2), wp.constant(3)
 REASONS = (
     "",
@@ -63,8 +65,9 @@ def note_solve(
 
 
 @wp.kernel(enable_backward=False)
-def begin_record(record: StepRecord):
-    """Begin a step."""
+def begin_record(record: StepRecord, matrix: DenseMatrix):
+    """Begin a step, with a factor of its own."""
+    matrix.stale[0] = 1
     record.counts[wp.static(ITERATIONS)] = 0
     record.reason[0] = 0
     record.limited[0] = 0

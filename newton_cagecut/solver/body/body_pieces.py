@@ -47,9 +47,11 @@ def body_pieces(body: SimulatedBody) -> tuple[BodyPiece, ...]:
     piece_of_vertex = np.empty(body.cage.vertex_count, dtype=np.int64)
     for number, piece in enumerate(pieces):
         piece_of_vertex[piece.vertices] = number
-    points, triangles = body.surface.points, np.asarray(body.surface.triangles)
-    rows = body.coordinates.weights[body.surface_row : body.surface_row + len(points)]
+    surface, first = body.surface, body.surface_row
+    rows = body.coordinates.weights[first : first + surface.site_count]
     of_point = piece_of_vertex[np.abs(rows).argmax(axis=1)]
+    if surface.point_site is not None:
+        of_point = of_point[surface.point_site]
     density = body.definition.material.density if body.system is not None else 0.0
     thickness = body.definition.thickness if body.is_plane else 1.0
     return tuple(
@@ -57,7 +59,7 @@ def body_pieces(body: SimulatedBody) -> tuple[BodyPiece, ...]:
             vertices=piece.vertices,
             faces=piece.faces,
             surface_points=np.flatnonzero(of_point == number),
-            surface_triangles=np.flatnonzero(of_point[triangles[:, 0]] == number),
+            surface_triangles=np.flatnonzero(of_point[surface.triangles[:, 0]] == number),
             volume=thickness * piece.volume,
             mass=density * thickness * piece.volume,
         )

@@ -66,9 +66,9 @@ class CageBody:
 
     @property
     def surface_weights(self) -> np.ndarray:
-        """Weights of the surface's points, shape (point_count, vertex_count), float32; a copy."""
+        """Weights of the sites of the surface, shape (site_count, vertex_count), float32; a copy."""
         first = self._simulated.surface_row
-        return self.coordinates.weights[first : first + self.surface.point_count]
+        return self.coordinates.weights[first : first + self.surface.site_count]
 
     @property
     def quadrature_count(self) -> int:

@@ -20,7 +20,7 @@ class Capacity:
 
     Args:
         vertices: Vertices of the cage.
-        surface_points: Points of the embedded surface.
+        surface_points: Points of the embedded surface, those along seams counting as one.
         surface_triangles: Triangles of the embedded surface, caps included.
     """
 
@@ -31,7 +31,7 @@ class Capacity:
     @classmethod
     def for_cuts(cls, cage: Cage, surface: Surface) -> Capacity:
         """Room for several cuts through all of a body."""
-        point_count, triangle_count = len(surface.points), len(surface.triangles)
+        point_count, triangle_count = surface.site_count, surface.triangle_count
         spare_points = 1024 + point_count // 2
         return cls(
             vertices=4 * cage.vertex_count + 64,
@@ -44,8 +44,8 @@ class Capacity:
         """No room to spare."""
         return cls(
             vertices=cage.vertex_count,
-            surface_points=len(surface.points),
-            surface_triangles=len(surface.triangles),
+            surface_points=surface.site_count,
+            surface_triangles=surface.triangle_count,
         )
 
     def require(self, cage: Cage, surface: Surface) -> None:
@@ -56,8 +56,8 @@ class Capacity:
         """
         needed = {
             "vertices": cage.vertex_count,
-            "surface_points": len(surface.points),
-            "surface_triangles": len(surface.triangles),
+            "surface_points": surface.site_count,
+            "surface_triangles": surface.triangle_count,
         }
         for name, count in needed.items():
             if count > getattr(self, name):

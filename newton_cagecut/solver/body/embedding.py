@@ -5,7 +5,10 @@
 
 from __future__ import annotations
 
+import numpy as np
 import warp as wp
+
+from ...surface import Surface
 
 wp.set_module_options({"enable_backward": False})
 
@@ -54,3 +57,32 @@ def embed(
     i = wp.tid()
     if i < rows.point_count[0] and enabled[0] != 0:
         points[i] = at_surface_point(i, vertices, rows)
+
+
+@wp.kernel(enable_backward=False)
+def copy_sites(point_site: wp.array[wp.int32], sites: wp.array[wp.vec3], points: wp.array[wp.vec3]):
+    """Put each point where its site is."""
+    i = wp.tid()
+    points[i] = sites[point_site[i]]
+
+
+class SeamPoints:
+    """Positions of all points of a surface with seams, from those of its sites."""
+
+    def __init__(self) -> None:
+        self._surface: Surface | None = None
+
+    def points_of(self, surface: Surface, sites: wp.array) -> wp.array:
+        """Positions of a surface's points, an array that the next call overwrites, shape (point_count,) [m].
+
+        Args:
+            surface: The surface, with seams.
+            sites: Positions of its sites, shape (site_count,) [m].
+        """
+        if surface is not self._surface:
+            self._surface = surface
+            self._point_site = wp.array(surface.point_site.astype(np.int32), dtype=wp.int32, device=sites.device)
+            self._points = wp.empty(surface.point_count, dtype=wp.vec3, device=sites.device)
+        inputs = [self._point_site, sites, self._points]
+        wp.launch(copy_sites, dim=surface.point_count, inputs=inputs, device=sites.device)
+        return self._points

@@ -22,7 +22,7 @@ from ..contact.contact_term import ContactTerm
 from .body_quadrature import SPARE_COUNT, BodyQuadrature
 from .definition import BodyDefinition
 from .edit_stamps import EditStamps, hold_rows, state_edits
-from .embedding import embed, make_surface_rows
+from .embedding import SeamPoints, embed, make_surface_rows
 from .rest_frame import RestFrame
 
 _NUDGE = 1.0e-6
@@ -83,6 +83,7 @@ class SimulatedBody:
         self.system = self._make_system() if self.quadrature_count else None
         self.contact = ContactTerm(self) if self.has_contact and self.system else None
         self._surface_buffer = None
+        self._seams = SeamPoints()
         self._held = tuple(wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device) for _ in range(2))
         self._always = wp.ones(1, dtype=wp.int32, device=self.device)
         self._triangles = wp.empty(self.capacity.surface_triangles, dtype=wp.vec3i, device=self.device)
@@ -121,13 +122,13 @@ class SimulatedBody:
             wp.copy(q_out, q_in)
             wp.copy(qd_out, qd_in)
         else:
-            term = None
+            points = None
             if self.contact is not None and contacts is not None:
                 self.contact.collect(state_in, contacts)
-                term = self.contact
+                points = self.contact.points
             forces = state_in.particle_f[self.vertices]
             q_old, qd_old = self._before_step(q_in, qd_in) if state_in is state_out else (q_in, qd_in)
-            self.system.step(q_in, qd_in, q_out, qd_out, dt, gravity=self.gravity, forces=forces, term=term)
+            self.system.step(q_in, qd_in, q_out, qd_out, dt, gravity=self.gravity, forces=forces, points=points)
             self._hold([q_old, qd_old, q_out, qd_out])
         if self.has_contact:
             if state_in is not state_out:
@@ -188,7 +189,15 @@ class SimulatedBody:
                 self._surface_buffer = wp.zeros(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
             points = self._surface_buffer
         self._embed(state.particle_q[self.vertices], points, None)
-        return points[: len(self.surface.points)]
+        sites = points[: self.surface.site_count]
+        return sites if self.surface.point_site is None else self._seams.points_of(self.surface, sites)
+
+    def surface_velocities(self, state: newton.State) -> wp.array:
+        """Velocities of the surface's points [m/s], shape (point_count,)."""
+        self.require_current(state)
+        velocities = wp.empty(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
+        self._embed(state.particle_qd[self.vertices], velocities, None)
+        return velocities[: len(self.surface.points)]
 
     def surface_triangles(self) -> wp.array:
         """Triangles of the surface, shape (triangle_count,) vec3i."""
@@ -197,11 +206,11 @@ class SimulatedBody:
     def set_surface(self, surface: Surface) -> None:
         """Take over a surface whose points are in the coordinates already."""
         self.surface = surface
-        self.point_count.fill_(surface.point_count)
+        self.point_count.fill_(surface.site_count)
         _write_rows(self._triangles, 0, np.asarray(surface.triangles, dtype=np.int32))
         if self.has_contact:
             start = self.surface_particles.start
-            flags = np.full(len(surface.points), int(newton.ParticleFlags.ACTIVE), dtype=np.int32)
+            flags = np.full(surface.site_count, int(newton.ParticleFlags.ACTIVE), dtype=np.int32)
             _write_rows(self.model.particle_flags, start, flags)
 
     def to_world(self, points: np.ndarray) -> np.ndarray:
@@ -290,17 +299,19 @@ class SimulatedBody:
             return Energy(0.0, 0.0)
         return self.system.energy(state.particle_q[self.vertices], state.particle_qd[self.vertices])
 
-    def nudged_points(self, surface: Surface, indices: np.ndarray) -> np.ndarray:
-        """Points of a surface, moved by next to nothing off other cuts that they may lie on, into their own piece.
+    def nudged_sites(self, surface: Surface, indices: np.ndarray) -> np.ndarray:
+        """Sites of a surface, moved by next to nothing off other cuts that they may lie on, into their own piece.
 
         Args:
             surface: The surface.
-            indices: Points of it, shape (n,).
+            indices: Which of them, shape (n,).
 
         Returns:
             Rest positions [m], shape (n, dimension).
         """
-        return surface.points[indices] + _NUDGE * self.definition.cage.diameter * surface.directions_inward(indices)
+        return surface.site_points[indices] + _NUDGE * self.definition.cage.diameter * surface.directions_inward(
+            indices
+        )
 
     def _embed(self, vertices: wp.array, points: wp.array, enabled: wp.array | None) -> None:
         inputs = [self._always if enabled is None else enabled, vertices, self.surface_rows, points]
@@ -323,11 +334,11 @@ class SimulatedBody:
         quadrature = np.zeros((0, definition.cage.dimension))
         if self.quadrature is not None:
             quadrature = self.quadrature.points
-        surface_points = surface.points.copy()
-        on_cuts = np.flatnonzero(surface.point_key >= 0)
+        sites = surface.site_points.copy()
+        on_cuts = np.flatnonzero(surface.site_key >= 0)
         if len(on_cuts):
-            surface_points[on_cuts] = self.nudged_points(surface, on_cuts)
-        points = np.concatenate([quadrature, surface_points])
+            sites[on_cuts] = self.nudged_sites(surface, on_cuts)
+        points = np.concatenate([quadrature, sites])
         return HarmonicCoordinates(
             definition.cage,
             points,
@@ -336,7 +347,7 @@ class SimulatedBody:
             gradients=np.arange(len(points)) < len(quadrature),
             cuttable=definition.cuttable,
             device=self.device,
-            point_keys=np.concatenate([np.full(len(quadrature), -1), surface.point_key]),
+            point_keys=np.concatenate([np.full(len(quadrature), -1), surface.site_key]),
             point_capacity=len(quadrature) + self.capacity.surface_points,
             vertex_capacity=self.capacity.vertices,
             progress=progress,
@@ -357,8 +368,7 @@ class SimulatedBody:
             piece=self.piece,
             integrator=self.config.integrator,
             newton_iterations=self.config.newton_iterations,
-            max_iterations=self.config.max_iterations,
-            tolerance=self.config.tolerance,
+            limits=self.config.limits,
         )
 
     def _padded(self, mask: np.ndarray) -> np.ndarray:

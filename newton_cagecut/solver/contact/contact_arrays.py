@@ -8,6 +8,9 @@ from __future__ import annotations
 import newton
 import warp as wp
 
+from ...elastic import PointForces
+from ..body.embedding import SurfaceRows
+
 
 @wp.struct
 class SoftContacts:
@@ -61,26 +64,6 @@ class ContactState:
     """Twists about the centre of mass, one a rigid body [m/s, rad/s]."""
 
 
-@wp.struct
-class TouchedPoints:
-    """What contact does to the surface's points; rows of the last two are those of ``touching``."""
-
-    force: wp.array[wp.vec3]
-    """Force at rest, one a point [N]."""
-    stiffness: wp.array[wp.mat33]
-    """Stiffness, one a point [N/m]."""
-    damping: wp.array[wp.mat33]
-    """Damping, one a point [N s/m]."""
-    touching: wp.array[wp.int32]
-    """The points that touch something."""
-    touching_count: wp.array[wp.int32]
-    """Number of points that touch something, shape (1,)."""
-    system: wp.array[wp.mat33]
-    """Block of the step's matrix."""
-    product: wp.array[wp.vec3]
-    """Residual, or the block's product with a direction."""
-
-
 def soft_contacts(contacts: newton.Contacts) -> SoftContacts:
     """The soft contacts of a collision pipeline."""
     found = SoftContacts()
@@ -110,12 +93,13 @@ def contact_state(state: newton.State) -> ContactState:
     return found
 
 
-def make_touched_points(capacity: int, device: wp.context.Device) -> TouchedPoints:
-    """Room for as many points."""
-    points = TouchedPoints()
+def make_contact_forces(rows: SurfaceRows, capacity: int, device: wp.Device) -> PointForces:
+    """Room for forces on as many surface points, whose rows are given."""
+    points = PointForces()
+    points.weights, points.first_row = rows.weights, rows.first_row
     with wp.ScopedDevice(device):
         points.force, points.product = (wp.zeros(capacity, dtype=wp.vec3) for _ in range(2))
         points.stiffness, points.damping, points.system = (wp.zeros(capacity, dtype=wp.mat33) for _ in range(3))
-        points.touching = wp.zeros(capacity, dtype=wp.int32)
-        points.touching_count = wp.zeros(1, dtype=wp.int32)
+        points.touched = wp.zeros(capacity, dtype=wp.int32)
+        points.count = wp.zeros(1, dtype=wp.int32)
     return points

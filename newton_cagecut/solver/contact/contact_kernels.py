@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import warp as wp
 
-from ..body.embedding import SurfaceRows, at_surface_point
-from .contact_arrays import ContactModel, ContactState, SoftContacts, TouchedPoints
+from ...elastic import PointForces
+from ..body.embedding import SurfaceRows
+from .contact_arrays import ContactModel, ContactState, SoftContacts
 
 wp.set_module_options({"enable_backward": False})
 
@@ -23,7 +24,7 @@ def collect_contacts(
     state: ContactState,
     first_particle: int,
     rows: SurfaceRows,
-    points: TouchedPoints,
+    points: PointForces,
 ):
     """Penalty force, stiffness and damping of one soft contact, added to its surface point."""
     c = wp.tid()
@@ -62,72 +63,8 @@ def collect_contacts(
 
 
 @wp.kernel(enable_backward=False)
-def list_touching(rows: SurfaceRows, points: TouchedPoints):
+def list_touching(rows: SurfaceRows, points: PointForces):
     """List the surface points that touch something."""
     i = wp.tid()
     if i < rows.point_count[0] and wp.trace(points.stiffness[i]) > 0.0:
-        points.touching[wp.atomic_add(points.touching_count, 0, 1)] = i
-
-
-@wp.kernel(enable_backward=False)
-def find_contact_residual(
-    scales: wp.vec3,
-    guess: wp.array[wp.vec3],
-    earlier: wp.array[wp.vec3],
-    rows: SurfaceRows,
-    points: TouchedPoints,
-):
-    """Residual and system block of each touching point; scales of force, stiffness and damping."""
-    slot = wp.tid()
-    if slot < points.touching_count[0]:
-        i = points.touching[slot]
-        block = scales[1] * points.stiffness[i] + scales[2] * points.damping[i]
-        force = points.force[i] + points.damping[i] * at_surface_point(i, earlier, rows)
-        points.system[slot] = block
-        points.product[slot] = scales[0] * force - block * at_surface_point(i, guess, rows)
-
-
-@wp.kernel(enable_backward=False)
-def find_contact_product(direction: wp.array[wp.vec3], rows: SurfaceRows, points: TouchedPoints):
-    """System block times a direction at each touching point."""
-    slot = wp.tid()
-    if slot < points.touching_count[0]:
-        points.product[slot] = points.system[slot] * at_surface_point(points.touching[slot], direction, rows)
-
-
-@wp.func
-def pulled_back(j: int, rows: SurfaceRows, points: TouchedPoints) -> wp.vec3:
-    """Residuals or products of the touching points, summed with their weights of a vertex."""
-    total = wp.vec3()
-    for slot in range(points.touching_count[0]):
-        total += rows.weights[rows.first_row + points.touching[slot], j] * points.product[slot]
-    return total
-
-
-@wp.kernel(enable_backward=False)
-def add_contact_residual(
-    fixed: wp.array[wp.int32],
-    rows: SurfaceRows,
-    points: TouchedPoints,
-    residual: wp.array[wp.vec3],
-    blocks: wp.array[wp.mat33],
-):
-    """Pull residual and diagonal blocks back to a vertex."""
-    j = wp.tid()
-    if j < rows.vertex_count[0] and fixed[j] == 0:
-        block = wp.mat33()
-        for slot in range(points.touching_count[0]):
-            w = rows.weights[rows.first_row + points.touching[slot], j]
-            block += (w * w) * points.system[slot]
-        blocks[j] = blocks[j] + block
-        residual[j] = residual[j] + pulled_back(j, rows, points)
-
-
-@wp.kernel(enable_backward=False)
-def add_contact_product(
-    fixed: wp.array[wp.int32], rows: SurfaceRows, points: TouchedPoints, product: wp.array[wp.vec3]
-):
-    """Pull a product back to a vertex."""
-    j = wp.tid()
-    if j < rows.vertex_count[0] and fixed[j] == 0:
-        product[j] = product[j] + pulled_back(j, rows, points)
+        points.touched[wp.atomic_add(points.count, 0, 1)] = i

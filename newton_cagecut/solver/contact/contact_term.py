@@ -15,16 +15,15 @@ from typing import TYPE_CHECKING
 import newton
 import warp as wp
 
-from ...elastic import TermScales
 from . import contact_kernels
-from .contact_arrays import contact_model, contact_state, make_touched_points, soft_contacts
+from .contact_arrays import contact_model, contact_state, make_contact_forces, soft_contacts
 
 if TYPE_CHECKING:
     from ..body.simulated_body import SimulatedBody
 
 
 class ContactTerm:
-    """Contact as a further linear term of a body's step; see ``elastic.LinearTerm``.
+    """Contact as forces on the surface points, which a body's step takes.
 
     Args:
         body: The body, with surface particles.
@@ -32,12 +31,12 @@ class ContactTerm:
 
     def __init__(self, body: SimulatedBody) -> None:
         self._body = body
-        self.points = make_touched_points(body.capacity.surface_points, body.device)
+        self.points = make_contact_forces(body.surface_rows, body.capacity.surface_points, body.device)
 
     def collect(self, state: newton.State, contacts: newton.Contacts) -> None:
         """Sum the soft contacts of each surface point."""
         body, model, points = self._body, self._body.model, self.points
-        for array in (points.force, points.stiffness, points.damping, points.touching_count):
+        for array in (points.force, points.stiffness, points.damping, points.count):
             array.zero_()
         if model.shape_count == 0 or contacts.soft_contact_max == 0:
             return
@@ -54,28 +53,9 @@ class ContactTerm:
             ],
             device=body.device,
         )
-        self._launch_points(contact_kernels.list_touching, [])
-
-    def add_residual(
-        self, scales: TermScales, guess: wp.array, earlier: wp.array, residual: wp.array, blocks: wp.array
-    ) -> None:
-        """Add contact to the residual and to the matrix's diagonal blocks."""
-        self._launch_points(contact_kernels.find_contact_residual, [wp.vec3(*scales), guess, earlier])
-        self._launch_vertices(contact_kernels.add_contact_residual, [residual, blocks])
-
-    def add_product(self, direction: wp.array, product: wp.array) -> None:
-        """Add the product of the contact matrix with a direction."""
-        self._launch_points(contact_kernels.find_contact_product, [direction])
-        self._launch_vertices(contact_kernels.add_contact_product, [product])
-
-    def _launch_points(self, kernel: wp.Kernel, inputs: list) -> None:
-        """One launch over the surface's points."""
-        body = self._body
-        inputs = [*inputs, body.surface_rows, self.points]
-        wp.launch(kernel, dim=body.capacity.surface_points, inputs=inputs, device=body.device)
-
-    def _launch_vertices(self, kernel: wp.Kernel, results: list[wp.array]) -> None:
-        """One launch over the cage's vertices, which adds to results."""
-        body = self._body
-        inputs = [body.fixed, body.surface_rows, self.points, *results]
-        wp.launch(kernel, dim=body.capacity.vertices, inputs=inputs, device=body.device)
+        wp.launch(
+            contact_kernels.list_touching,
+            dim=body.capacity.surface_points,
+            inputs=[body.surface_rows, points],
+            device=body.device,
+        )

@@ -116,8 +116,8 @@ class BodyCut:
         changed = np.concatenate([surface_edit.created, surface_edit.moved])
         points = None
         if len(changed):
-            places = body.nudged_points(surface, changed)
-            points = PointChange(body.surface_row + changed, places, surface.point_key[changed])
+            places = body.nudged_sites(surface, changed)
+            points = PointChange(body.surface_row + changed, places, surface.site_key[changed])
         stats = body.coordinates.update(edit, points=points, journal=journal)
         if edit.cage.piece_count > edit.before.piece_count:
             body.distribute_quadrature(journal)
