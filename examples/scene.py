@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
 from argparse import ArgumentParser, Namespace
 
 import newton
@@ -21,8 +22,10 @@ from examples.timings import Timings
 from newton_cagecut import SolverCageCut
 from newton_cagecut.solver import CageBody
 
+_NO_DISPLAY = ("NoSuchDisplayException", "NoSuchConfigException", "NoSuchScreenModeException")
 
-class CutScene:
+
+class CutScene(ABC):
     """What the scenes have in common: a scene says what is in it, this does the rest.
 
     Args:
@@ -64,13 +67,13 @@ class CutScene:
         viewer.set_model(self.model)
         self._aim_viewer()
 
+    @abstractmethod
     def add_bodies(self, builder: newton.ModelBuilder) -> None:
         """Add what is in the scene, but for the ground."""
-        raise NotImplementedError
 
+    @abstractmethod
     def cuts(self) -> list[PlannedCut]:
         """Return the cuts that will be made."""
-        raise NotImplementedError
 
     def painted(self, body: CageBody) -> np.ndarray:
         """Return which triangles of a body's surface have the colour of the paint, as a mask."""
@@ -155,7 +158,15 @@ class CutScene:
     @classmethod
     def main(cls) -> CutScene:
         """Run the scene with the options of the command line, and return it as it is at the end."""
-        viewer, args = newton.examples.init(cls.create_parser())
+        try:
+            viewer, args = newton.examples.init(cls.create_parser())
+        except Exception as error:
+            if type(error).__name__ not in _NO_DISPLAY:  # classes of pyglet, which other viewers do without
+                raise
+            raise SystemExit(
+                f"{cls.name}: a window needs a display, and there is none ({error}); --headless draws without one, "
+                "--viewer null shows nothing, and --usd and --picture write files"
+            ) from None
         scene = cls(viewer, args)
         try:
             newton.examples.run(scene, args)

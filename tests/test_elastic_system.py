@@ -152,13 +152,16 @@ def test_stiff_body_gains_no_energy(dimension, model):
 
 @both_dimensions
 def test_tumbling_stiff_body_stays_whole(dimension):
-    """At 1 GPa and 5 rad/s nothing blows up: the energy ends below its start and edges keep their lengths."""
+    """At 1 GPa and 5 rad/s nothing blows up: the energy ends below its start and edges keep their lengths.
+
+    In 300 steps what the integrator takes, 1e-4, is more than the rounding of float32 positions adds, up to 5e-5.
+    """
     body = Body(dimension, cells=(1, 1, 2), points=3, young=1e9)
     offset = body.rest - body.rest.mean(axis=0)
     spin = {2: [0.0, 0.0, 5.0], 3: [3.0, 4.0, 0.0]}[dimension]
     body.place(velocities=np.cross(spin, offset))
     start = body.energy()
-    body.run(120)
+    body.run(300)
     assert body.energy() < start
     edges, rest_edges = (np.linalg.norm(p[1:] - p[0], axis=1) for p in (body.positions, body.rest))
     np.testing.assert_allclose(edges, rest_edges, rtol=1e-2)

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 import warp as wp
 
-from newton_cagecut.harmonic.fit.layers.segment_layers import Segment, make_segments, segment_layers, segment_slopes
+from newton_cagecut.harmonic.fit.layers.segment_layers import Segment, segment_layers, segment_rows, segment_slopes
 from newton_cagecut.harmonic.fit.layers.triangle_layers import (
     Triangle,
-    make_triangles,
     triangle_layers,
+    triangle_rows,
     triangle_slopes,
 )
 
 KINDS = {
-    2: (Segment, wp.vec2d, wp.mat22d, segment_layers, segment_slopes, make_segments),
-    3: (Triangle, wp.vec3d, wp.types.matrix((3, 3), wp.float64), triangle_layers, triangle_slopes, make_triangles),
+    2: (Segment, wp.vec2d, wp.mat22d, segment_layers, segment_slopes, segment_rows),
+    3: (Triangle, wp.vec3d, wp.types.matrix((3, 3), wp.float64), triangle_layers, triangle_slopes, triangle_rows),
 }
 
 
@@ -47,11 +47,11 @@ def make_kernels(dimension: int) -> tuple[wp.Kernel, wp.Kernel]:
 def layers(corners: np.ndarray, points: np.ndarray, *, slopes: bool = False) -> np.ndarray:
     """Layers of panels at points, shape (point, panel, 2, hat function), charges first; or their gradients."""
     dimension = points.shape[1]
-    _, Vector, Matrix, _, _, make = KINDS[dimension]
+    Panel, Vector, Matrix, _, _, rows_of = KINDS[dimension]
     out = wp.zeros((len(points), len(corners), 2), dtype=Matrix if slopes else Vector, device="cpu")
     at = wp.array(points, dtype=Vector, device="cpu")
     kernel = make_kernels(dimension)[int(slopes)]
-    wp.launch(kernel, out.shape[:2], [make(corners, "cpu"), at, out], device="cpu")
+    wp.launch(kernel, out.shape[:2], [wp.array(rows_of(corners), dtype=Panel, device="cpu"), at, out], device="cpu")
     return out.numpy().copy()
 
 

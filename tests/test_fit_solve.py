@@ -9,9 +9,10 @@ import pytest
 import warp as wp
 
 from newton_cagecut.harmonic import launch as launching
-from newton_cagecut.harmonic.fit.layers.products import LANE, WIDTH, lane_count, multiply_lanes
+from newton_cagecut.harmonic.fit.layers.elimination import solve_each
+from newton_cagecut.harmonic.fit.layers.products import WIDTH, multiply_spans
 from newton_cagecut.harmonic.fit.layers.solve import System
-from newton_cagecut.harmonic.launch import launch
+from newton_cagecut.harmonic.fit.layers.spans import SPAN, Span, in_spans
 
 CPU = wp.get_device("cpu")
 
@@ -21,29 +22,29 @@ def flat(lanes: wp.array) -> np.ndarray:
     return lanes.numpy().reshape(lanes.shape[0], -1)
 
 
-def solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Solution by elimination."""
+def filled(matrix: np.ndarray, right: np.ndarray) -> System:
+    """A system with its numbers."""
     system = System(len(matrix), right.shape[1], CPU)
     numbers = flat(system.matrix).copy()
     numbers[: len(matrix), : len(matrix)] = matrix
     first = system.first_lane * WIDTH
     numbers[: len(matrix), first : first + right.shape[1]] = right
     system.matrix.assign(numbers.reshape(*system.matrix.shape, WIDTH))
-    return flat(system.solve())[: len(matrix), : right.shape[1]].copy()
+    return system
+
+
+def solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Solution by elimination."""
+    return flat(filled(matrix, right).solve())[: len(matrix), : right.shape[1]].copy()
 
 
 def product(left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Product by lanes."""
-
-    def lanes_of(numbers: np.ndarray, rows: int) -> wp.array:
-        filled = np.zeros((rows, lane_count(numbers.shape[1]) * WIDTH))
-        filled[: len(numbers), : numbers.shape[1]] = numbers
-        return wp.array(filled.reshape(rows, -1, WIDTH), dtype=LANE, device=CPU)
-
-    a, b = lanes_of(left, len(left)), lanes_of(right, lane_count(left.shape[1]) * WIDTH)
-    out = wp.zeros((len(left), b.shape[1]), dtype=LANE, device=CPU)
-    launch(multiply_lanes, -(-len(left) // 4) * b.shape[1], [a, b, a.shape[1], out], device=CPU, smallest_chunk=4)
-    return flat(out)[:, : right.shape[1]].copy()
+    """Product of spans: rows of the left matrix are points, its columns stand in another order in the spans."""
+    order = np.random.default_rng(0).permutation(left.shape[1])
+    spans = in_spans(left)[:, np.argsort(order)].reshape(-1, SPAN, left.shape[1]).swapaxes(1, 2)
+    spans = wp.array(np.ascontiguousarray(spans, dtype=np.float32), dtype=Span, device=CPU)
+    jobs = np.array([[row, 0, len(order)] for row in range(spans.shape[0])])
+    return multiply_spans(jobs, spans, order, right)[: len(left)]
 
 
 def positive(count: int, seed: int) -> np.ndarray:
@@ -64,7 +65,34 @@ def test_products(shape):
     """Products are those of NumPy, for sizes that fill lanes and threads' rows and others."""
     rng = np.random.default_rng(2)
     left, right = rng.normal(size=shape[:2]), rng.normal(size=shape[1:])
-    np.testing.assert_allclose(product(left, right), left @ right, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(product(left, right), left @ right, rtol=1e-5, atol=1e-5)
+
+
+@pytest.mark.parametrize("same", [0, 63, 64, 100, 150])
+def test_what_is_kept_of_a_system_keeps_bits(same):
+    """Where the first equations are those of another system, going on from it has the bits of solving all anew."""
+    other, matrix = positive(150, 1), positive(170, 2)
+    matrix[:same, :same] = other[:same, :same]
+    rng = np.random.default_rng(3)
+    earlier = filled(other, rng.normal(size=(150, 4)))
+    earlier.solve()
+    right = rng.normal(size=(170, 5))
+    expected = flat(filled(matrix, right).solve()).copy()
+    system = filled(matrix, right)
+    kept = system.take_over(earlier, same)
+    assert kept == same // 64 * 64
+    assert np.array_equal(flat(system.solve(kept=kept)), expected)
+
+
+def test_small_systems_are_solved():
+    """Many at once, of several sizes, are solved as NumPy would, each whatever the others are."""
+    rng = np.random.default_rng(5)
+    matrices = [positive(count, count) for count in (3, 40, 17)]
+    rights = [rng.normal(size=(len(matrix), columns)) for matrix, columns in zip(matrices, (2, 9, 4))]
+    together = solve_each(matrices, rights, CPU)
+    for matrix, right, found in zip(matrices, rights, together):
+        np.testing.assert_allclose(found, np.linalg.solve(matrix, right), rtol=1e-9, atol=1e-10)
+        assert np.array_equal(solve_each([matrix], [right], CPU)[0], found)
 
 
 def test_bits_do_not_depend_on_threads(monkeypatch):

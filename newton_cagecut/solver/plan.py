@@ -129,11 +129,13 @@ def _feature(held: HeldArray) -> str:
         return "elasticity"
     if first == "contact":
         return "contact"
+    if first == "uncut":
+        return "walk cache"
     if first in ("_triangles", "_surface_buffer"):
         return "surface"
     if first != "coordinates":
         return "vertices"
-    if path & {"fit", "residuals", "known_faces"}:
+    if path & {"fit", "residuals", "memory", "fitted_rows"}:
         return "fitted weights"
     if "records" in path:
         return "walk cache"

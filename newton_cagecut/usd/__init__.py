@@ -6,7 +6,8 @@ from .animation import AnimationWriter
 from .body_frame import BodyFrame
 from .layers import checked_path
 from .mesh_data import MeshData, check_mesh, turn_up
-from .read import read_cage, read_mesh, read_meshes, read_surface
+from .outline import border_of
+from .read import open_stage, read_cage, read_mesh, read_meshes, read_surface
 from .scene_frame import SceneFrame, SceneShape
 from .validate import validate_animation
 from .write import write_cage, write_mesh
@@ -17,8 +18,10 @@ __all__ = [
     "MeshData",
     "SceneFrame",
     "SceneShape",
+    "border_of",
     "check_mesh",
     "checked_path",
+    "open_stage",
     "read_cage",
     "read_mesh",
     "read_meshes",

@@ -10,9 +10,11 @@ import warp as wp
 from ..arrays import (
     DAMPING,
     DAMPING_SHARE,
+    DRIVEN,
     ELASTIC_FORCE,
     ELASTIC_STIFFNESS,
     FORCE,
+    HELD,
     STAGE_TIME,
     START_SHARE,
     STIFFNESS,
@@ -32,12 +34,6 @@ from .stage_arrays import PieceArrays, StageArrays, StageFactors
 from .step_record import BAD_FORCE, BAD_RESULT, BAD_START, StepRecord
 
 wp.set_module_options({"enable_backward": False})
-
-
-@wp.func
-def is_finite(v: wp.vec3) -> bool:
-    """Whether all components are finite."""
-    return wp.isfinite(v[0]) and wp.isfinite(v[1]) and wp.isfinite(v[2])
 
 
 @wp.func
@@ -67,11 +63,11 @@ def begin_stages(
     if i == 0:
         step.scales[TIME_STEP] = dt
     if i < body.vertex_count[0]:
-        if not (is_finite(positions[i]) and is_finite(velocities[i])):
+        if not (wp.isfinite(positions[i]) and wp.isfinite(velocities[i])):
             wp.atomic_max(record.reason, 0, BAD_START)
-        elif not (is_finite(gravity[0]) and is_finite(forces[i])):
+        elif not (wp.isfinite(gravity[0]) and wp.isfinite(forces[i])):
             wp.atomic_max(record.reason, 0, BAD_FORCE)
-        if body.fixed[i] == 0:
+        if body.fixed[i] != HELD:
             velocity = confined(wp.vec3d(velocities[i]), body)
         for j in range(body.vertex_count[0]):
             row_mass += wp.float64(body.mass[i, j])
@@ -204,8 +200,11 @@ def end_stages(
     i = wp.tid()
     position, velocity = wp.vec3(stage.start[i]), wp.vec3(velocities[i])
     if i < body.vertex_count[0]:
-        if body.fixed[i] != 0:
+        if body.fixed[i] == HELD:
             velocity = wp.vec3()
+        elif body.fixed[i] == DRIVEN:
+            velocity = wp.vec3(stage.velocity[i])
+            position = wp.vec3(wp.vec3d(position) + stage.moved[i])
         else:
             moved = stage.moved[i]
             velocity = wp.vec3(confined(moved / step.scales[STAGE_TIME] - wp.vec3d(stage.earlier_velocity[i]), body))
@@ -214,7 +213,7 @@ def end_stages(
                 normal = body.normal[0]
                 place -= wp.dot(normal, place - wp.vec3d(body.rest[i])) * normal
             position = wp.vec3(place)
-        if not (is_finite(position) and is_finite(velocity)):
+        if not (wp.isfinite(position) and wp.isfinite(velocity)):
             wp.atomic_max(record.reason, 0, BAD_RESULT)
     stage.position_out[i] = position
     stage.velocity_out[i] = velocity

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +14,7 @@ import warp as wp
 from ...cage import Cage, CageEdit
 from ..faces.face_tables import FaceTables, build_face_tables
 from ..fit.boundary_fit import BoundaryFit
-from ..fit.face_dipoles import FaceFunctions
+from ..fit.fit_memory import FitMemory
 from ..fit.residual_sums import ResidualTable
 from ..fit.residuals import build_residuals
 from ..launch import launch
@@ -36,7 +36,7 @@ class DomainState:
         quads: "mean_value" or "harmonic": how convex quads interpolate.
         distance: "grid" or "all": how the nearest wall is found.
         change: What the edit that led here means for walks; None at first.
-        known_faces: Boundary functions of faces from the last fit of any of these states, which the next one can use.
+        memory: What the last fit of any of these states has left for the next one.
     """
 
     cage: Cage
@@ -44,8 +44,8 @@ class DomainState:
     faces: FaceTables
     quads: str
     distance: str
+    memory: FitMemory
     change: DomainChange | None = None
-    known_faces: dict[bytes, FaceFunctions] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -63,7 +63,8 @@ class DomainState:
             triangles = _triangles(cage, cage.vertices[cage.simplices], cage.face_wall[cage.simplex_face])
             walls = Walls.of_triangles(UnitFrame.of(cage.vertices), *triangles, device=device)
         grid = CandidateGrid(walls, resolution=grid_resolution if distance == "grid" else 1)
-        return cls(cage, grid, build_face_tables(cage, walls.frame, quads=quads, device=device), quads, distance)
+        faces = build_face_tables(cage, walls.frame, quads=quads, device=device)
+        return cls(cage, grid, faces, quads, distance, FitMemory(cage.dimension, device))
 
     @property
     def walls(self) -> Walls:
@@ -83,12 +84,16 @@ class DomainState:
     @cached_property
     def fit(self) -> BoundaryFit:
         """The fit of the cage's coordinates, made when it is first asked for."""
-        return BoundaryFit(self.cage, quads=self.quads, device=self.device, known=self.known_faces)
+        return BoundaryFit(self.cage, quads=self.quads, device=self.device, memory=self.memory)
 
     @cached_property
     def residuals(self) -> ResidualTable:
         """What the fit leaves over on the faces, evaluated when it is first asked for."""
         return build_residuals(self.fit, self.frame, self.device)
+
+    def forgetful(self) -> DomainState:
+        """This state, with a fit that is made without anything that earlier ones have left."""
+        return replace(self, memory=FitMemory(self.cage.dimension, self.device))
 
     def pieces_of(self, points: np.ndarray) -> np.ndarray:
         """Piece of the cage that each rest position lies in; all 0 while there is one. Shape (n,)."""

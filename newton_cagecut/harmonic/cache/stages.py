@@ -14,6 +14,7 @@ import warp as wp
 from ..faces.land import land_walks
 from ..options import WalkOptions
 from ..resolve.fitted import WalkedResiduals, resolve_fitted
+from ..resolve.fitted_rows import FittedRows
 from ..resolve.point_weights import PointWeights
 from ..resolve.resolve import resolve_points
 from ..stats import UpdateStats
@@ -41,6 +42,7 @@ class Stages:
         weights: Where points are resolved to.
         records: What is kept of all walks; None where nothing is.
         stats: Where counts and times are added.
+        rows: Layers of a fit that are kept, if any.
     """
 
     state: DomainState
@@ -50,6 +52,7 @@ class Stages:
     weights: PointWeights
     records: WalkRecords | None
     stats: UpdateStats
+    rows: FittedRows = FittedRows()
 
     def run_all(self, *, progress: Callable[[float], None] | None = None) -> None:
         """Walk, land and resolve every point: all together where walks are kept, else in batches.
@@ -148,7 +151,7 @@ class Stages:
             landed = None
             if walks:
                 landed = WalkedResiduals(residuals, state.faces, self.records, walks, first_point)
-            resolve_fitted(indices, self.weights, self.points, fit, state.grid, landed)
+            resolve_fitted(indices, self.weights, self.points, fit, state.grid, landed, self.rows)
             self._count_resolved(indices)
 
     def _count_resolved(self, indices: np.ndarray) -> None:

@@ -10,6 +10,7 @@ import warp as wp
 
 from ..journal import Journal
 from ..options import WalkOptions
+from ..resolve.fitted_rows import FittedRows
 from ..resolve.point_weights import PointWeights
 from ..stats import UpdateStats
 from ..walks.query_points import (
@@ -66,6 +67,9 @@ class WalkCache:
         errors = options.correction == "fitted" and options.walks > 0
         self.weights = PointWeights(point_capacity, int(gradient_mask.sum()), room, device=state.device, errors=errors)
         self.records: WalkRecords | None = None
+        self.fitted_rows = FittedRows()
+        if cuttable and options.correction == "fitted":
+            self.fitted_rows = FittedRows.kept(state.cage.dimension, len(gradient_mask), state.device)
         if cuttable:
             self.records = kept_records(state, options, point_capacity * options.walks)
 
@@ -118,6 +122,7 @@ class WalkCache:
             "landings": sum(map(_bytes, landings)),
             "bounds": _bytes(records.bounds) if records else 0,
             "points": byte_count(self.points),
+            "layers": self.fitted_rows.byte_count,
         }
 
     def stages(self, state: DomainState, stats: UpdateStats) -> Stages:
@@ -127,7 +132,9 @@ class WalkCache:
             state: Walls and faces.
             stats: Where counts and times are added.
         """
-        return Stages(state, self.options, self.points, self.point_count, self.weights, self.records, stats)
+        return Stages(
+            state, self.options, self.points, self.point_count, self.weights, self.records, stats, self.fitted_rows
+        )
 
     def work_of(self, indices: np.ndarray) -> Work:
         """All walks of some points."""

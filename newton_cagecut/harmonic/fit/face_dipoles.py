@@ -10,9 +10,8 @@ linear functions exactly, and panels are divided until the error is small.
 from __future__ import annotations
 
 import numpy as np
-import warp as wp
 
-from .face_values import FaceValues, face_values
+from .face_values import FaceFunctions
 
 _DIVISIONS = 4
 _NEAR, _FAR = 0.816847572980459, 0.108103018168070
@@ -40,56 +39,35 @@ _PROJECTION = np.linalg.inv((np.ones((3, 3)) + np.eye(3)) / 12.0) @ (_HATS * _WE
 """From values at the rule's points to those at the corners of the linear function of least square error."""
 
 
-def projected(values: FaceValues, corners: np.ndarray, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
-    """Boundary functions of a face as linear functions on triangles.
+def projected(
+    functions: list[FaceFunctions], corners: list[np.ndarray], tolerance: float
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Boundary functions of faces as linear functions on triangles.
 
     Args:
-        values: The functions.
-        corners: Panels of the face in its plane, shape (panel_count, 3, 2).
+        functions: The functions of each face.
+        corners: Panels of each face in its plane, shape (panel_count, 3, 2) each.
         tolerance: Error at which triangles are divided no more.
 
     Returns:
-        Corners of the triangles in the plane, shape (n, 3, 2), and values there, shape (n, 3, corner_count).
+        For each face corners of the triangles in the plane, shape (n, 3, 2), and values there, shape
+        (n, 3, corner_count).
     """
-    triangles, densities = [], []
+    parts = [([], []) for _ in functions]
+    faces = list(range(len(functions)))
     for division in range(_DIVISIONS + 1):
-        points = sum(_HATS[:, k, None] * corners[:, None, k] for k in range(3))
-        found = values(points.reshape(-1, 2)).reshape(len(corners), len(_HATS), -1)
-        density = np.einsum("kq,tqc->tkc", _PROJECTION, found)
-        error = np.abs(np.einsum("qk,tkc->tqc", _HATS, density) - found).max(axis=(1, 2))
-        large = (error > tolerance) & (division < _DIVISIONS)
-        triangles.append(corners[~large])
-        densities.append(density[~large])
-        if not large.any():
+        points = [sum(_HATS[:, k, None] * own[:, None, k] for k in range(3)).reshape(-1, 2) for own in corners]
+        left = []
+        for face, own, found in zip(faces, corners, FaceFunctions.values([functions[f] for f in faces], points)):
+            found = found.reshape(len(own), len(_HATS), -1)
+            density = np.einsum("kq,tqc->tkc", _PROJECTION, found)
+            error = np.abs(np.einsum("qk,tkc->tqc", _HATS, density) - found).max(axis=(1, 2))
+            large = (error > tolerance) & (division < _DIVISIONS)
+            parts[face][0].append(own[~large])
+            parts[face][1].append(density[~large])
+            if large.any():
+                left.append((face, divided(own[large])))
+        if not left:
             break
-        corners = divided(corners[large])
-    return np.concatenate(triangles), np.concatenate(densities)
-
-
-class FaceFunctions:
-    """The boundary functions of a face, and what was last asked of them: an edit leaves the panels of most faces alone.
-
-    Args:
-        corners: Corners in the face's plane, counterclockwise, shape (corner_count, 2).
-        quads: "mean_value" or "harmonic": how convex quads interpolate.
-        device: Where to compute.
-    """
-
-    def __init__(self, corners: np.ndarray, *, quads: str, device: wp.context.Device) -> None:
-        self.values = face_values(corners, quads=quads, device=device)
-        self._places, self._found = b"", np.zeros(0)
-        self._panels, self._projected = b"", (np.zeros(0), np.zeros(0))
-
-    def at(self, points: np.ndarray) -> np.ndarray:
-        """The functions at points of the face's plane, shape (n, corner_count)."""
-        places = points.tobytes()
-        if places != self._places:
-            self._places, self._found = places, self.values(points)
-        return self._found
-
-    def projected(self, corners: np.ndarray, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
-        """The functions as linear ones on triangles; see ``projected``."""
-        panels = corners.tobytes()
-        if panels != self._panels:
-            self._panels, self._projected = panels, projected(self.values, corners, tolerance)
-        return self._projected
+        faces, corners = (list(column) for column in zip(*left))
+    return [(np.concatenate(triangles), np.concatenate(densities)) for triangles, densities in parts]

@@ -14,29 +14,77 @@ from collections.abc import Callable
 import numpy as np
 import warp as wp
 
-from .plane_fit import PlaneFit, nearest_edges, polygon_edges
+from .plane_fit import Outline, OutlineFits, nearest_edges, polygon_edges
 
 FaceValues = Callable[[np.ndarray], np.ndarray]
 """Points of a face's plane, shape (n, 2) -> what each corner counts there, shape (n, corner_count)."""
 _RIGHT = 1e-9
 
 
-def face_values(corners: np.ndarray, *, quads: str, device: wp.context.Device) -> FaceValues:
+class FaceFunctions:
     """The boundary functions of a face.
 
     Args:
         corners: Corners in the face's plane, counterclockwise, shape (corner_count, 2).
         quads: "mean_value" or "harmonic": how convex quads interpolate.
-        device: Where to fit.
     """
+
+    def __init__(self, corners: np.ndarray, *, quads: str) -> None:
+        self.corner_count = len(corners)
+        self._direct = _direct_values(corners, quads=quads)
+        self._corners = corners
+        self._fits: OutlineFits | None = None
+        self._number = 0
+
+    @staticmethod
+    def make_fits(functions: list[FaceFunctions], device: wp.context.Device) -> None:
+        """Make the fits of all functions that need one, together.
+
+        Args:
+            functions: The functions.
+            device: Where to fit.
+        """
+        wanted = [own for own in functions if own._direct is None and own._fits is None]
+        if wanted:
+            fits = OutlineFits([Outline(*polygon_edges(own._corners)) for own in wanted], device)
+            for number, own in enumerate(wanted):
+                own._fits, own._number = fits, number
+
+    @staticmethod
+    def values(functions: list[FaceFunctions], points: list[np.ndarray]) -> list[np.ndarray]:
+        """What corners count at points of the planes of faces.
+
+        Args:
+            functions: The functions of the faces, whose fits have been made.
+            points: Points of each, shape (n, 2) each.
+
+        Returns:
+            Values, shape (n, corner_count) each.
+        """
+        found = [np.zeros((0, own.corner_count)) for own in functions]
+        by_fits: dict[int, list[int]] = {}
+        for k, (own, places) in enumerate(zip(functions, points)):
+            if own._direct is not None:
+                found[k] = own._direct(places)
+            elif len(places):
+                by_fits.setdefault(id(own._fits), []).append(k)
+        for chosen in by_fits.values():
+            numbers = [functions[k]._number for k in chosen]
+            values = functions[chosen[0]]._fits.values(numbers, [points[k] for k in chosen])
+            for k, own in zip(chosen, values):
+                found[k] = own
+        return found
+
+
+def _direct_values(corners: np.ndarray, *, quads: str) -> FaceValues | None:
+    """Boundary functions that have a closed form; None for others."""
     if len(corners) == 3:
         return _barycentric(corners)
     if len(corners) == 4 and quads == "mean_value" and _is_convex(corners):
         return lambda points: _mean_values(corners, points)
     if len(corners) == 4 and _is_rectangle(corners):
         return lambda points: _bilinear(corners, points)
-    edges, columns = polygon_edges(corners)
-    return PlaneFit(edges, columns, len(corners), device).values
+    return None
 
 
 def _cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:

@@ -5,6 +5,7 @@
 
 from functools import cache
 
+import numpy as np
 import warp as wp
 
 from ..faces.face_tables import FaceTables, plane_point
@@ -15,6 +16,14 @@ wp.set_module_options({"enable_backward": False})
 
 TERMS = {2: 3, 3: 6}
 """Terms of a quadratic function: squares and products of hat functions."""
+_OUTER, _INNER = 0.816847572980459, 0.108103018168070
+NODES = {
+    2: np.array([[0.9, 0.1], [0.5, 0.5], [0.1, 0.9]]),
+    3: np.concatenate(
+        [(0.5 - 0.5 * own) * np.ones((3, 3)) + (1.5 * own - 0.5) * np.eye(3) for own in (_OUTER, _INNER)]
+    ),
+}
+"""Inner points of panels, by their hat functions; the values there determine a quadratic function."""
 
 
 @wp.struct

@@ -17,18 +17,7 @@ import warp as wp
 from ..walls.frame import UnitFrame
 from .boundary_fit import BoundaryFit
 from .layers.products import LANE, WIDTH, lane_count
-from .residual_sums import TERMS, ResidualCell, ResidualTable
-
-_INWARD = 1e-6
-"""How far inside of a face the fit is evaluated, in the unit frame."""
-_OUTER, _INNER = 0.816847572980459, 0.108103018168070
-# Inner points of panels, by their hat functions; the values there determine a quadratic function.
-_NODES = {
-    2: np.array([[0.9, 0.1], [0.5, 0.5], [0.1, 0.9]]),
-    3: np.concatenate(
-        [(0.5 - 0.5 * own) * np.ones((3, 3)) + (1.5 * own - 0.5) * np.eye(3) for own in (_OUTER, _INNER)]
-    ),
-}
+from .residual_sums import NODES, TERMS, ResidualCell, ResidualTable
 
 
 def _terms(hats: np.ndarray) -> np.ndarray:
@@ -47,12 +36,8 @@ def build_residuals(fit: BoundaryFit, frame: UnitFrame, device: wp.context.Devic
     """
     cage = fit.cage
     corners, face = fit.panels()
-    dimension, hats = cage.dimension, _NODES[cage.dimension]
-    places = sum(hats[:, k, None] * corners[:, None, k] for k in range(dimension)).reshape(-1, dimension)
-    owner = np.repeat(face, len(hats))
-    inside = places - _INWARD * fit.frame.half_side * fit.outward(owner)
-    residual = fit.boundary(places, owner) - fit.values(inside, cage.face_piece[owner])
-    residual = residual.reshape(len(face), len(hats), -1)
+    hats = NODES[cage.dimension]
+    residual = fit.residuals(hats)
     inverse = np.linalg.inv(_terms(hats))
     terms = np.zeros((len(face), len(hats), lane_count(cage.vertex_count) * WIDTH))
     terms[:, :, : cage.vertex_count] = np.einsum("kn,cnv->ckv", inverse, residual)

@@ -20,6 +20,7 @@ from ..walks.query_points import QueryPoints
 from ..walks.records import WalkRecords
 from ..walls.grid import CandidateGrid
 from ..walls.nearest_wall import measure_distance
+from .fitted_rows import FittedRows
 from .point_weights import PointWeights
 
 _NEAR = 1e-5
@@ -103,6 +104,7 @@ def resolve_fitted(
     fit: BoundaryFit,
     grid: CandidateGrid,
     landed: WalkedResiduals | None,
+    rows: FittedRows,
 ) -> None:
     """Read the weights of points, and the gradients of those that have them, from a fit.
 
@@ -115,6 +117,7 @@ def resolve_fitted(
         fit: The fit of their cage.
         grid: The walls.
         landed: What walks say of the fit; None without walks.
+        rows: Layers that are kept.
     """
     device = weights.weights.device
     position, key, piece, gradient_row = (
@@ -125,23 +128,25 @@ def resolve_fitted(
     rest = position[:, : fit.cage.dimension].astype(np.float64) * frame.half_side + frame.center
     for first in range(0, len(indices), _BATCH):
         some = slice(first, first + _BATCH)
-        rows = wp.array(indices[some].astype(np.int32), dtype=wp.int32, device=device)
-        found = fit.weights(rest[some], piece[some], face[some])
+        at = wp.array(indices[some].astype(np.int32), dtype=wp.int32, device=device)
+        kept = rows.values and rows.values.choose(indices[some])
+        found = fit.weights(rest[some], piece[some], face[some], rows=kept)
         if landed is not None:
             inside = np.where(face[some] < 0, piece[some], -1)
             found, errors = _corrected(indices[some], rest[some], inside, found, fit, landed)
             errors = wp.array(errors, dtype=wp.float64, device=device)
-            launch(_write_errors, rows.size, [rows, errors, weights.errors], device=device)
+            launch(_write_errors, at.size, [at, errors, weights.errors], device=device)
         values = wp.array(found, dtype=wp.float64, device=device)
-        inputs = [rows, values, weights.weights, weights.degrees, weights.lowest]
-        launch(_write_weights, rows.size, inputs, device=device)
+        inputs = [at, values, weights.weights, weights.degrees, weights.lowest]
+        launch(_write_weights, at.size, inputs, device=device)
     sloped = np.flatnonzero(gradient_row >= 0)
     for first in range(0, len(sloped), _BATCH):
         some = sloped[first : first + _BATCH]
         slopes = np.zeros((len(some), fit.cage.vertex_count, 3), dtype=np.float32)
-        slopes[..., : fit.cage.dimension] = fit.slopes(rest[some], piece[some], face[some])
-        rows = wp.array(gradient_row[some].astype(np.int32), dtype=wp.int32, device=device)
-        inputs = [rows, wp.array(slopes, dtype=wp.vec3, device=device), weights.gradients]
+        kept = rows.slopes and rows.slopes.choose(gradient_row[some])
+        slopes[..., : fit.cage.dimension] = fit.slopes(rest[some], piece[some], face[some], rows=kept)
+        at = wp.array(gradient_row[some].astype(np.int32), dtype=wp.int32, device=device)
+        inputs = [at, wp.array(slopes, dtype=wp.vec3, device=device), weights.gradients]
         launch(_write_gradients, len(some), inputs, device=device)
 
 

@@ -12,238 +12,119 @@ bring the jump.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
-import warp as wp
 
-from ...launch import launch
-from .layer_rows import make_layer_rows
-from .products import LANE, WIDTH, lane_count, multiply_lanes
+from .galerkin import Galerkin
+from .products import multiply_spans
+from .sheet_rows import SheetRows
+from .sheets import Sheet, SheetBatch
 from .solve import System
+from .spans import in_spans
 
-wp.set_module_options({"enable_backward": False})
-
-_INWARD = 1e-10
-"""How far inside of their panels test points lie, in units of the frame's: that tells the sides of double layers."""
-_SAME = 1e-10
-"""Length below which corners are the same, in units of the frame's."""
-_BATCH = 2048
-"""Points whose rows are held at a time."""
-# Where the residual is tested, as hat functions there, and with what weights: exact for polynomials of degree 2.
-_TEST_HATS = {
-    2: np.array([[0.5 + np.sqrt(0.15), 0.5 - np.sqrt(0.15)], [0.5, 0.5], [0.5 - np.sqrt(0.15), 0.5 + np.sqrt(0.15)]]),
-    3: (np.ones((3, 3)) + 3.0 * np.eye(3)) / 6.0,
-}
-_TEST_WEIGHTS = {2: np.array([5.0, 8.0, 5.0]) / 18.0, 3: np.ones(3) / 3.0}
-
-
-@dataclass(frozen=True)
-class ChargePanels:
-    """Panels with unknown densities.
-
-    Args:
-        corners: Corners of the panels, counterclockwise seen from outside, in the plane with the inside to the left,
-            shape (panel_count, dimension, dimension).
-        nodes: The unknown at each corner, shape (panel_count, dimension); those that share it are continuous.
-    """
-
-    corners: np.ndarray
-    nodes: np.ndarray
-
-    @property
-    def node_count(self) -> int:
-        """Number of unknowns."""
-        return int(self.nodes.max()) + 1
-
-    @property
-    def test_points(self) -> np.ndarray:
-        """Points inside each panel, at which boundary values are met, shape (panel_count, 3, dimension)."""
-        return _combined(_TEST_HATS[self.corners.shape[1]], self.corners)
-
-
-@dataclass(frozen=True)
-class DipolePanels:
-    """Panels with known densities, linear on each.
-
-    Args:
-        corners: Corners of the panels, as those of ``ChargePanels``.
-        start: First item of each panel, and the end of the last, shape (panel_count + 1,).
-        column: Function that each item belongs to, shape (item_count,).
-        density: Its values at the panel's corners, shape (item_count, dimension).
-    """
-
-    corners: np.ndarray
-    start: np.ndarray
-    column: np.ndarray
-    density: np.ndarray
-
-
-@wp.kernel(enable_backward=False)
-def _test_rows(
-    offset: int,
-    start: wp.array[wp.int32],
-    row: wp.array[wp.int32],
-    weight: wp.array[wp.float64],
-    rows: wp.array2d[LANE],
-    first_lane: int,
-    out: wp.array2d[LANE],
-):
-    """Sum rows with weights, a thread a lane of a sum."""
-    t = offset + wp.tid()
-    i = t // rows.shape[1]
-    lane = t % rows.shape[1]
-    total = LANE()
-    for item in range(start[i], start[i + 1]):
-        total += weight[item] * rows[row[item], lane]
-    out[i, first_lane + lane] = total
-
-
-class _Rows:
-    """A matrix that is filled number by number and read lane by lane."""
-
-    def __init__(self, count: int, columns: int, device: wp.context.Device) -> None:
-        self.numbers = wp.zeros((count, lane_count(columns) * WIDTH), dtype=wp.float64, device=device)
-        shape = (count, lane_count(columns))
-        self.lanes = wp.array(ptr=self.numbers.ptr, shape=shape, dtype=LANE, device=device, copy=False)
+_BATCH = 4096
+"""Points whose layers are held at a time where none are kept."""
 
 
 class DensityFit:
-    """Harmonic functions with given boundary values, by layers.
+    """Harmonic functions with given boundary values, by layers of some sheets.
+
+    The sums run over the sheets in their order, so that sheets which change often belong at the end.
 
     Args:
-        charges: Panels with unknown densities.
-        dipoles: Panels with the boundary values as densities.
-        values: Boundary values at ``charges.test_points``, shape (panel_count, 3, column_count).
-        device: Where to compute.
+        sheets: The sheets, in order.
+        columns: The function that each function of a sheet is.
+        column_count: Number of functions.
+        galerkin: Integrals between the sheets.
+        earlier: An earlier fit; what both have in common is not solved again.
 
     Raises:
         ValueError: There is no solution.
     """
 
     def __init__(
-        self, charges: ChargePanels, dipoles: DipolePanels, values: np.ndarray, device: wp.context.Device
+        self,
+        sheets: list[Sheet],
+        columns: list[np.ndarray],
+        column_count: int,
+        galerkin: Galerkin,
+        *,
+        earlier: DensityFit | None = None,
     ) -> None:
-        self.device = device
-        self.dimension = charges.corners.shape[1]
-        self.column_count = values.shape[2]
-        self.node_count = charges.node_count
-        kit = self._kit = make_layer_rows(self.dimension)
-        corners, nodes, dipoles = _merged(charges, dipoles)
-        self.panel_count = len(corners)
-        self._panels = [
-            kit.make_panels(corners, device),
-            kit.make_far_panels(corners, device),
-            wp.array(nodes.astype(np.int32), dtype=kit.Nodes, device=device),
-            wp.array(dipoles.start.astype(np.int32), dtype=wp.int32, device=device),
-            wp.array(dipoles.column.astype(np.int32), dtype=wp.int32, device=device),
-            wp.array(dipoles.density, dtype=kit.Vector, device=device),
-        ]
-        self._density = self._solved(charges, values)
-
-    def _solved(self, charges: ChargePanels, values: np.ndarray) -> wp.array:
-        """Densities of the nodes, a row each and fill rows of 0."""
-        inward, size = _inward(charges.corners)
-        points = (charges.test_points + _INWARD * inward[:, None]).reshape(-1, self.dimension)
-        system = System(self.node_count, self.column_count, self.device)
-        test = self._test(charges, size)
-        known = _Rows(len(points), self.column_count, self.device)
-        filled = np.zeros(known.numbers.shape)
-        filled[:, : self.column_count] = values.reshape(len(points), -1)
-        known.numbers.assign(-filled)
-        unknown = _Rows(len(points), self.node_count, self.device)
-        self._run(self._kit.layers, points, unknown, known)
-        self._apply(test, known, system.first_lane, system.matrix, -1.0)
-        self._apply(test, unknown, 0, system.matrix, 1.0)
-        density = wp.clone(system.solve())
-        if not np.isfinite(density.numpy()).all():
+        self.sheets, self.column_count = sheets, column_count
+        self.node_count = sum(sheet.node_count for sheet in sheets)
+        system = System(self.node_count, column_count, galerkin.device)
+        kept = 0
+        if earlier is not None:
+            kept = system.take_over(earlier._system, _shared(sheets, earlier.sheets))
+        galerkin.fill(sheets, system, columns, known=kept)
+        density = system.solve(kept=kept).numpy().reshape(-1, system.lanes * 8)[: self.node_count, :column_count]
+        if not np.isfinite(density).all():
             raise ValueError(
                 "the fit of this cage has no solution: faces of no area, or walls that all but coincide; "
                 "take correction='harmonic'"
             )
-        return density
+        self._system = system
+        self._right = _right_side(sheets, columns, density)
 
-    def _test(self, charges: ChargePanels, size: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What the test points count for each node: first item of a node, points and weights, by node and point."""
-        hats, weights = _TEST_HATS[self.dimension], _TEST_WEIGHTS[self.dimension]
-        count = len(weights)
-        weight = size[:, None, None] * (weights[:, None] * hats)
-        node = np.broadcast_to(charges.nodes[:, None], weight.shape).ravel()
-        row = np.broadcast_to(np.arange(len(size) * count).reshape(-1, count, 1), weight.shape).ravel()
-        order = np.argsort(node, kind="stable")
-        start = np.concatenate([[0], np.cumsum(np.bincount(node, minlength=self.node_count))])
-        return start, row[order], weight.ravel()[order]
+    def evaluated(self, rows: SheetRows, spans: np.ndarray) -> np.ndarray:
+        """The functions at spans of points, or their gradients, whose layers have been computed.
 
-    def _apply(self, test: tuple, rows: _Rows, first_lane: int, out: wp.array, sign: float) -> None:
-        start, row, weight = test
-        inputs = [
-            wp.array(start.astype(np.int32), dtype=wp.int32, device=self.device),
-            wp.array(row.astype(np.int32), dtype=wp.int32, device=self.device),
-            wp.array(sign * weight, dtype=wp.float64, device=self.device),
-            rows.lanes,
-            first_lane,
-            out,
-        ]
-        launch(_test_rows, self.node_count * rows.lanes.shape[1], inputs, device=self.device)
+        Args:
+            rows: Layers of the sheets.
+            spans: The spans, shape (n,).
 
-    def _run(self, kernel: wp.Kernel, points: np.ndarray, unknown: _Rows, known: _Rows) -> None:
-        at = wp.array(points, dtype=self._kit.Vector, device=self.device)
-        inputs = [*self._panels, at, unknown.numbers, known.numbers]
-        launch(kernel, len(points), inputs, device=self.device, smallest_chunk=8)
+        Returns:
+            Values, shape (n, 16, column_count), or gradients, shape (n, 16, column_count, dimension).
+        """
+        axes = rows.dimension if rows.slopes else 1
+        row = (axes * spans[:, None] + np.arange(axes)).reshape(-1)
+        columns = rows.columns(self.sheets)
+        jobs = np.stack([row, np.zeros_like(row), np.full_like(row, len(columns))], axis=1)
+        found = multiply_spans(jobs, rows.matrix, columns, self._right).astype(np.float64)
+        found = found.reshape(len(spans), axes, -1, self.column_count)
+        return np.moveaxis(found, 1, 3) if rows.slopes else found[:, 0]
 
-    def values(self, points: np.ndarray) -> np.ndarray:
-        """The functions at points inside, shape (point_count, column_count)."""
-        return self._evaluated(points, self._kit.layers, 1)
+    def at(self, points: np.ndarray, batch: SheetBatch, *, slopes: bool = False) -> np.ndarray:
+        """The functions at points of which nothing is kept.
 
-    def gradients(self, points: np.ndarray) -> np.ndarray:
-        """Gradients of the functions at points inside, shape (point_count, column_count, dimension)."""
-        rows = self._evaluated(points, self._kit.slopes, self.dimension)
-        return np.swapaxes(rows.reshape(len(points), self.dimension, self.column_count), 1, 2)
+        Args:
+            points: Points inside, shape (point_count, dimension).
+            batch: The sheets, these among others.
+            slopes: Whether gradients are wanted in place of values.
 
-    def _evaluated(self, points: np.ndarray, kernel: wp.Kernel, rows_each: int) -> np.ndarray:
-        out = np.empty((len(points) * rows_each, self.column_count))
-        batch = max(1, _BATCH // rows_each)
-        for first in range(0, len(points), batch):
-            some = points[first : first + batch]
-            left = _Rows(len(some) * rows_each, self.node_count, self.device)
-            total = _Rows(len(some) * rows_each, self.column_count, self.device)
-            self._run(kernel, some, left, total)
-            lanes = total.lanes
-            count = -(-lanes.shape[0] // 4) * lanes.shape[1]
-            inputs = [left.lanes, self._density, left.lanes.shape[1], lanes]
-            launch(multiply_lanes, count, inputs, device=self.device, smallest_chunk=16)
-            part = total.numbers.numpy()[:, : self.column_count]
-            out[first * rows_each : first * rows_each + len(part)] = part
+        Returns:
+            Values, shape (point_count, column_count), or gradients, with a last axis of the dimension.
+        """
+        shape = (len(points), self.column_count) + ((batch.dimension,) if slopes else ())
+        out = np.empty(shape)
+        own = np.isin(np.array([id(sheet) for sheet in batch.sheets]), [id(sheet) for sheet in self.sheets])
+        for first in range(0, len(points), _BATCH):
+            some = points[first : first + _BATCH]
+            rows = SheetRows(batch.dimension, batch.device, slopes=slopes)
+            rows.place(in_spans(some))
+            spans = np.arange(rows.span_count)
+            rows.bring(batch, np.repeat(own[:, None], len(spans), axis=1))
+            found = self.evaluated(rows, spans)
+            out[first : first + len(some)] = found.reshape(-1, *shape[1:])[: len(some)]
         return out
 
 
-def _merged(charges: ChargePanels, dipoles: DipolePanels) -> tuple[np.ndarray, np.ndarray, DipolePanels]:
-    """Panels that carry charges, dipoles or both: corners, nodes that are -1 without charges, and dipoles."""
-    corners = np.concatenate([charges.corners, dipoles.corners])
-    key = np.round(corners / _SAME).astype(np.int64).reshape(len(corners), -1)
-    _, first, panel = np.unique(key, axis=0, return_index=True, return_inverse=True)
-    charged, panel = np.split(panel.reshape(-1), [len(charges.corners)])
-    nodes = np.full((len(first), charges.nodes.shape[1]), -1)
-    nodes[charged] = charges.nodes
-    owner = np.repeat(panel, np.diff(dipoles.start))
-    order = np.argsort(owner, kind="stable")
-    start = np.searchsorted(owner[order], np.arange(len(first) + 1))
-    merged = DipolePanels(corners[first], start, dipoles.column[order], dipoles.density[order])
-    return merged.corners, nodes, merged
+def _shared(sheets: list[Sheet], earlier: list[Sheet]) -> int:
+    """Unknowns of the first sheets that are the same in both lists."""
+    count = 0
+    for sheet, other in zip(sheets, earlier):
+        if sheet is not other:
+            break
+        count += sheet.node_count
+    return count
 
 
-def _combined(hats: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Points of panels at given hat functions, shape (panel_count, point_count, dimension), summed in a fixed order."""
-    return sum(hats[:, k, None] * corners[:, None, k] for k in range(corners.shape[1]))
-
-
-def _inward(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Unit normals of panels that point inside, and the panels' sizes."""
-    edge = corners[:, 1] - corners[:, 0]
-    if corners.shape[1] == 2:
-        normal = edge[:, ::-1] * [-1.0, 1.0]
-        size = np.sqrt((normal**2).sum(axis=1))
-        return normal / size[:, None], size
-    normal = -np.cross(edge, corners[:, 2] - corners[:, 0])
-    size = np.sqrt((normal**2).sum(axis=1))
-    return normal / size[:, None], size / 2.0
+def _right_side(sheets: list[Sheet], columns: list[np.ndarray], density: np.ndarray) -> np.ndarray:
+    """What each layer counts for the functions: charges their densities, dipoles minus one for their own function."""
+    right = np.zeros((sum(sheet.column_count for sheet in sheets), density.shape[1]), dtype=np.float32)
+    first = node = 0
+    for sheet, own in zip(sheets, columns):
+        right[first : first + sheet.node_count] = density[node : node + sheet.node_count]
+        right[first + sheet.node_count + np.arange(len(own)), own] = -1.0
+        first, node = first + sheet.column_count, node + sheet.node_count
+    return right

@@ -10,7 +10,11 @@ lane are 0.
 
 from __future__ import annotations
 
+import numpy as np
 import warp as wp
+
+from ...launch import launch
+from .spans import SPAN, Span
 
 # Loops stay loops: unrolled they are no faster here, and take thirty times as long to compile.
 wp.set_module_options({"enable_backward": False, "max_unroll": 0})
@@ -18,50 +22,16 @@ wp.set_module_options({"enable_backward": False, "max_unroll": 0})
 WIDTH = 8
 """Columns of a lane."""
 LANE = wp.types.vector(length=WIDTH, dtype=wp.float64)
-BLOCK_LANES = 4
+BLOCK_LANES = 8
 BLOCK = BLOCK_LANES * WIDTH
 """Rows of a block, and the columns of its lanes."""
 ROWS = 4
-"""Rows that a thread works on, so that what it reads of the others serves all of them."""
+"""Rows or columns that a thread works on, so that what it reads of the others serves all of them."""
 
 
 def lane_count(columns: int) -> int:
     """Lanes of a row with so many columns."""
     return -(-columns // WIDTH)
-
-
-@wp.kernel(enable_backward=False)
-def multiply_lanes(offset: int, left: wp.array2d[LANE], right: wp.array2d[LANE], inner: int, out: wp.array2d[LANE]):
-    """Add the product of two matrices to a third one; ``inner`` lanes of the left one are used."""
-    t = offset + wp.tid()
-    lane = t % out.shape[1]
-    first = (t // out.shape[1]) * wp.static(ROWS)
-    last = out.shape[0] - 1
-    row_1 = wp.min(first + 1, last)
-    row_2 = wp.min(first + 2, last)
-    row_3 = wp.min(first + 3, last)
-    sum_0 = out[first, lane]
-    sum_1 = out[row_1, lane]
-    sum_2 = out[row_2, lane]
-    sum_3 = out[row_3, lane]
-    for k in range(inner):
-        a_0 = left[first, k]
-        a_1 = left[row_1, k]
-        a_2 = left[row_2, k]
-        a_3 = left[row_3, k]
-        for c in range(wp.static(WIDTH)):
-            b = right[k * wp.static(WIDTH) + c, lane]
-            sum_0 += a_0[c] * b
-            sum_1 += a_1[c] * b
-            sum_2 += a_2[c] * b
-            sum_3 += a_3[c] * b
-    out[first, lane] = sum_0
-    if first + 1 <= last:
-        out[row_1, lane] = sum_1
-    if first + 2 <= last:
-        out[row_2, lane] = sum_2
-    if first + 3 <= last:
-        out[row_3, lane] = sum_3
 
 
 @wp.kernel(enable_backward=False)
@@ -89,3 +59,61 @@ def subtract_product(offset: int, matrix: wp.array2d[LANE], block: int, first_ro
     matrix[i + 1, lane] = sum_1
     matrix[i + 2, lane] = sum_2
     matrix[i + 3, lane] = sum_3
+
+
+@wp.kernel(enable_backward=False)
+def _multiply_spans(
+    offset: int,
+    jobs: wp.array[wp.vec3i],
+    left: wp.array2d[Span],
+    columns: wp.array[wp.int32],
+    right: wp.array2d[float],
+    out: wp.array2d[Span],
+):
+    """Products of rows of spans and a matrix, a thread some columns of a job: its row, and its range of the columns."""
+    t = offset + wp.tid()
+    quads = out.shape[1] // wp.static(ROWS)
+    i = t // quads
+    j = (t % quads) * wp.static(ROWS)
+    job = jobs[i]
+    sum_0 = Span()
+    sum_1 = Span()
+    sum_2 = Span()
+    sum_3 = Span()
+    for k in range(job[1], job[2]):
+        a = left[job[0], columns[k]]
+        sum_0 += right[k, j] * a
+        sum_1 += right[k, j + 1] * a
+        sum_2 += right[k, j + 2] * a
+        sum_3 += right[k, j + 3] * a
+    out[i, j] = sum_0
+    out[i, j + 1] = sum_1
+    out[i, j + 2] = sum_2
+    out[i, j + 3] = sum_3
+
+
+def multiply_spans(jobs: np.ndarray, left: wp.array, columns: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Products of rows of spans and a matrix.
+
+    Args:
+        jobs: For each product a row of ``left``, and the first and the end of its columns, shape (job_count, 3).
+        left: The spans.
+        columns: Columns of ``left``, in the order in which they are summed.
+        right: What each of these counts, shape (column_count, function_count).
+
+    Returns:
+        Products, a row a point, shape (job_count * 16, function_count), float32.
+    """
+    device, count = left.device, right.shape[1]
+    filled = np.zeros((len(right), -(-count // ROWS) * ROWS), dtype=np.float32)
+    filled[:, :count] = right
+    out = wp.empty((len(jobs), filled.shape[1]), dtype=Span, device=device)
+    inputs = [
+        wp.array(np.ascontiguousarray(jobs, dtype=np.int32), dtype=wp.vec3i, device=device),
+        left,
+        wp.array(np.asarray(columns, dtype=np.int32), dtype=wp.int32, device=device),
+        wp.array(filled, dtype=float, device=device),
+        out,
+    ]
+    launch(_multiply_spans, len(jobs) * (filled.shape[1] // ROWS), inputs, device=device, smallest_chunk=16)
+    return out.numpy().swapaxes(1, 2).reshape(len(jobs) * SPAN, -1)[:, :count]

@@ -126,15 +126,11 @@ def segment_slopes(panel: Segment, x: wp.vec2d) -> SegmentSlopes:
     return slopes
 
 
-def make_segments(corners: np.ndarray, device: wp.context.Devicelike) -> wp.array:
-    """Put segments on a device.
+def segment_rows(corners: np.ndarray) -> np.ndarray:
+    """Segments as rows of ``Segment``.
 
     Args:
         corners: Ends, the side of the normals to the right on the way, shape (segment_count, 2, 2).
-        device: Where to put them.
-
-    Returns:
-        Array of ``Segment``, shape (segment_count,).
     """
     corners = np.asarray(corners, dtype=np.float64)
     rows = np.zeros(len(corners), dtype=Segment.numpy_dtype())
@@ -143,4 +139,4 @@ def make_segments(corners: np.ndarray, device: wp.context.Devicelike) -> wp.arra
     along = edge / length[:, None]
     rows["start"], rows["along"], rows["length"] = corners[:, 0], along, length
     rows["normal"] = along[:, ::-1] * [1.0, -1.0]
-    return wp.array(rows, dtype=Segment, device=device)
+    return rows

@@ -37,13 +37,15 @@ def _factor_block(offset: int, matrix: wp.array2d[LANE], block: int):
 
 
 @wp.kernel(enable_backward=False)
-def _spread_block(offset: int, matrix: wp.array2d[LANE], block: int, row_count: int):
-    """Apply a factored block: from the right to the rows below it, then from the left to the lanes beside it."""
+def _spread_block(
+    offset: int, matrix: wp.array2d[LANE], block: int, row_count: int, first_row: int, first_lane_beside: int
+):
+    """Apply a factored block: from the right to rows below it, then from the left to lanes beside it."""
     t = offset + wp.tid()
     first = block * wp.static(BLOCK)
     first_lane = block * wp.static(BLOCK_LANES)
     if t < row_count:
-        i = first + wp.static(BLOCK) + t
+        i = first_row + t
         for k in range(wp.static(BLOCK)):
             lane_of_k = first_lane + k // wp.static(WIDTH)
             own = matrix[i, lane_of_k]
@@ -59,7 +61,7 @@ def _spread_block(offset: int, matrix: wp.array2d[LANE], block: int, row_count: 
                     change[k % wp.static(WIDTH)] = factor
                 matrix[i, lane] = change
     else:
-        lane = first_lane + wp.static(BLOCK_LANES) + t - row_count
+        lane = first_lane_beside + t - row_count
         for k in range(wp.static(BLOCK)):
             lane_of_k = first_lane + k // wp.static(WIDTH)
             row = matrix[first + k, lane]
@@ -109,25 +111,51 @@ class System:
         if len(fill):
             self.matrix[unknown_count:].assign(fill.reshape(len(fill), -1, WIDTH))
 
-    def solve(self) -> wp.array:
+    def take_over(self, other: System, unknown_count: int) -> int:
+        """Take over what another system, that is solved, has in common with this one.
+
+        Args:
+            other: The other system.
+            unknown_count: Number of first unknowns whose equations are the same in both.
+
+        Returns:
+            Number of rows and columns that are there now, factored: whole blocks.
+        """
+        blocks = unknown_count // BLOCK
+        if blocks:
+            part = slice(blocks * BLOCK), slice(blocks * BLOCK_LANES)
+            wp.copy(self.matrix[part], other.matrix[part])
+        return blocks * BLOCK
+
+    def solve(self, *, kept: int = 0) -> wp.array:
         """Solve the system, whose matrix is overwritten.
+
+        Args:
+            kept: Rows and columns that are factored already. What comes out has the bits that it has without any.
 
         Returns:
             The solutions as lanes, a row an unknown and fill rows of 0, a view of the matrix.
         """
-        matrix, blocks, lanes = self.matrix, self.block_count, self.matrix.shape[1]
+        matrix, blocks, lanes, kept = self.matrix, self.block_count, self.matrix.shape[1], kept // BLOCK
         for block in range(blocks):
-            launch(_factor_block, 1, [matrix, block], device=self.device)
-            rows = (blocks - 1 - block) * BLOCK
+            first = max(block + 1, kept)
+            rows, beside = (blocks - first) * BLOCK, lanes - first * BLOCK_LANES
+            if block >= kept:
+                launch(_factor_block, 1, [matrix, block], device=self.device)
+            self._launch(_spread_block, rows + beside, block, rows, first * BLOCK, first * BLOCK_LANES)
+            # Rows that are kept have new lanes only, new rows all of them.
+            between = (first - block - 1) * BLOCK
+            self._subtract(block, block + 1, between, first * BLOCK_LANES, beside)
             beside = lanes - (block + 1) * BLOCK_LANES
-            self._launch(_spread_block, rows + beside, block, rows)
-            size = (block + 1) * BLOCK, (block + 1) * BLOCK_LANES, beside
-            self._launch(subtract_product, rows // ROWS * beside, block, *size)
+            self._subtract(block, first, rows, (block + 1) * BLOCK_LANES, beside)
         for block in reversed(range(blocks)):
             self._launch(_solve_block, self.lanes, block, self.first_lane)
-            count = block * BLOCK // ROWS * self.lanes
-            self._launch(subtract_product, count, block, 0, self.first_lane, self.lanes)
+            self._subtract(block, 0, block * BLOCK, self.first_lane, self.lanes)
         return matrix[:, self.first_lane :]
+
+    def _subtract(self, block: int, first_block: int, rows: int, first_lane: int, lanes: int) -> None:
+        count = rows // ROWS * lanes
+        self._launch(subtract_product, count, block, first_block * BLOCK, first_lane, lanes)
 
     def _launch(self, kernel: wp.Kernel, count: int, *arguments: int) -> None:
         launch(kernel, count, [self.matrix, *arguments], device=self.device, smallest_chunk=16)

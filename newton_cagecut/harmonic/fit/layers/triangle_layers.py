@@ -197,15 +197,11 @@ def triangle_slopes(panel: Triangle, x: wp.vec3d) -> TriangleSlopes:
     return slopes
 
 
-def make_triangles(corners: np.ndarray, device: wp.context.Devicelike) -> wp.array:
-    """Put triangles on a device.
+def triangle_rows(corners: np.ndarray) -> np.ndarray:
+    """Triangles as rows of ``Triangle``.
 
     Args:
         corners: Corners, counterclockwise about the normals, shape (triangle_count, 3, 3).
-        device: Where to put them.
-
-    Returns:
-        Array of ``Triangle``, shape (triangle_count,).
     """
     corners = np.asarray(corners, dtype=np.float64)
     rows = np.zeros(len(corners), dtype=Triangle.numpy_dtype())
@@ -220,4 +216,4 @@ def make_triangles(corners: np.ndarray, device: wp.context.Devicelike) -> wp.arr
     rows["length"] = length
     rows["height"] = doubled[:, None] / np.roll(length, -1, axis=1)
     rows["cosine"] = (outward * np.roll(outward, -1, axis=1)).sum(axis=2)
-    return wp.array(rows, dtype=Triangle, device=device)
+    return rows

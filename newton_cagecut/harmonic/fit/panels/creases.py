@@ -18,6 +18,8 @@ from ....cage import Cage
 from ...walls.frame import UnitFrame
 
 _LEAST_ANGLE = 1.02 * np.pi
+_CHUNK = 1024
+_MARGIN = 1e-6
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,7 @@ class Creases:
         step: From there to their ends, shape (n, 3).
         least: Greatest length of panels on them, shape (n,).
         growth: Length of panels a distance away, relative to the distance.
+        at_front: Whether an end of them lies on the front of a cut, shape (n,).
         fronts: Half-edges of each face along the front of a cut, as pairs of face and half-edge, shape (m, 2).
     """
 
@@ -49,6 +52,7 @@ class Creases:
     step: np.ndarray
     least: np.ndarray
     growth: float
+    at_front: np.ndarray
     fronts: np.ndarray
 
     def wanted(self, points: np.ndarray, most: float) -> np.ndarray:
@@ -59,13 +63,32 @@ class Creases:
             most: Greatest length of any panel.
         """
         wanted = np.full(len(points), most)
-        squared = np.maximum((self.step**2).sum(axis=1), 1e-300)
-        for start, step, length, least in zip(self.start, self.step, squared, self.least):
-            offset = points - start
-            share = np.clip((offset * step).sum(axis=1) / length, 0.0, 1.0)
-            distance = np.sqrt(((offset - share[:, None] * step) ** 2).sum(axis=1))
-            np.minimum(wanted, np.maximum(least, self.growth * distance), out=wanted)
+        for first in range(0, len(points), _CHUNK):
+            some = slice(first, first + _CHUNK)
+            length = np.maximum(self.least, self.growth * self._distances(points[some]))
+            np.minimum(wanted[some], length.min(axis=1, initial=most), out=wanted[some])
         return wanted
+
+    def near(self, centers: np.ndarray, radii: np.ndarray, most: float) -> np.ndarray:
+        """Which creases may shrink panels in balls.
+
+        Args:
+            centers: Centres of the balls, shape (n, 3).
+            radii: Their radii, shape (n,).
+            most: Greatest length of any panel.
+
+        Returns:
+            Mask, shape (n, crease_count).
+        """
+        reach = most / self.growth * (1.0 + _MARGIN) + _MARGIN
+        return (self.least < most) & (self._distances(centers) - radii[:, None] < reach)
+
+    def _distances(self, points: np.ndarray) -> np.ndarray:
+        """Distances of points from the creases, shape (n, crease_count)."""
+        squared = np.maximum((self.step**2).sum(axis=1), 1e-300)
+        offset = points[:, None] - self.start
+        share = np.clip((offset * self.step).sum(axis=2) / squared, 0.0, 1.0)
+        return np.sqrt(((offset - share[:, :, None] * self.step) ** 2).sum(axis=2))
 
 
 def find_creases(cage: Cage, frame: UnitFrame, most: float, grading: Grading) -> Creases:
@@ -93,13 +116,17 @@ def find_creases(cage: Cage, frame: UnitFrame, most: float, grading: Grading) ->
     bent = (angle > _LEAST_ANGLE) & (half < mesh.twin[half])
     corner, corner_local = _concave_corners(cage, frame, most)
     fronts = np.stack([one[front], half[front]], axis=1)
+    at_front = np.zeros(cage.vertex_count, dtype=bool)
+    at_front[mesh.face_vertex[half[front]]] = True
+    ends = mesh.face_vertex[half[bent]], mesh.destination[half[bent]]
     return Creases(
-        np.concatenate([vertices[mesh.face_vertex[half[bent]]], vertices[corner]]),
+        np.concatenate([vertices[ends[0]], vertices[corner]]),
         np.concatenate([step[bent], np.zeros((len(corner), 3))]),
         np.concatenate(
             [local[bent] * grading.shrink ** (2.0 * angle[bent] / np.pi - 2.0), corner_local * grading.shrink]
         ),
         grading.growth,
+        np.concatenate([at_front[ends[0]] | at_front[ends[1]], at_front[corner]]),
         fronts,
     )
 
