@@ -13,7 +13,8 @@ functions have too, a rigid one above all, stays as it is. What is left is made 
   that it was cut into;
 - kinetic energy above what there was is taken from the motion beside the rigid one of each piece;
 - elastic energy above what there was is relaxed: the body moves from standstill for the shortest of a row of times
-  after which it has no more than before, and takes the places of then.
+  after which it has no more than before, and takes the places of then;
+- elastic energy below what there was is filled up as far as places between these and the inherited ones have it.
 """
 
 from __future__ import annotations
@@ -37,6 +38,9 @@ _RISE = 1.0e-7
 
 _ROUNDING = 1.0e-7
 """Strain of which the energy is rounding."""
+
+_FILLED, _SECANTS = 1.0e-3, 4
+"""Share of the elastic energy whose loss is left alone, and how many shares of the way are tried against it."""
 
 _SHORTEST, _DOUBLINGS = 0.05, 10
 """Shortest time of relaxation, in which a wave goes this far through a cell, and how often it is doubled at most."""
@@ -91,9 +95,11 @@ class MotionFit:
             return
         shapes = self._shapes()
         for state, kept in zip(self._states, self._kept, strict=True):
-            displacement = self._fitted_displacement(state, kept, shapes, piece_before)
+            inherited = self._rows(state.particle_q) - self._rest()
+            displacement = self._fitted_displacement(inherited, kept, shapes, piece_before)
             self._write(state.particle_q, self._rest() + displacement)
             self._relax(state, kept, journal)
+            self._fill(state, kept, self._centred(inherited, kept, shapes, piece_before))
             self._write(state.particle_qd, self._fitted_velocity(state, kept, shapes, piece_before))
 
     def _read(self, state: newton.State, shapes: _Shapes) -> _Kept:
@@ -113,11 +119,11 @@ class MotionFit:
         )
 
     def _fitted_displacement(
-        self, state: newton.State, kept: _Kept, shapes: _Shapes, piece_before: np.ndarray
+        self, inherited: np.ndarray, kept: _Kept, shapes: _Shapes, piece_before: np.ndarray
     ) -> np.ndarray:
         body, (_, gradients, volumes, mass) = self._body, shapes
         piece, free = body.cage.vertex_piece, self._movable()
-        displacement = self._rows(state.particle_q) - self._rest()
+        displacement = inherited.copy()
         missing = kept.gradients - _gradient(displacement, piece, shapes)
         missing[~self._used] = 0.0
         ties = body.system.stabilizing_stiffness.numpy()[: len(piece), : len(piece)].astype(float)
@@ -125,10 +131,15 @@ class MotionFit:
         wanted = np.einsum("q,qca,qja->jc", volumes, missing, gradients, optimize=True) - ties @ displacement
         matrix += (_HELD * np.trace(matrix) / np.trace(mass)) * mass
         displacement[free] += np.linalg.solve(matrix[np.ix_(free, free)], wanted[free])
+        return self._centred(displacement, kept, shapes, piece_before)
+
+    def _centred(self, displacement: np.ndarray, kept: _Kept, shapes: _Shapes, piece_before: np.ndarray) -> np.ndarray:
+        """Displacements with the centre of mass that each piece had, of those that nothing holds."""
+        displacement = displacement.copy()
         for p in np.flatnonzero(self._free):
             rows = piece_before == p
-            total = mass[rows].sum()
-            displacement[rows] += (kept.moments[p] - (mass[rows] @ displacement).sum(axis=0)) / total
+            total = shapes.mass[rows].sum()
+            displacement[rows] += (kept.moments[p] - (shapes.mass[rows] @ displacement).sum(axis=0)) / total
         return displacement
 
     def _fitted_velocity(
@@ -161,12 +172,35 @@ class MotionFit:
         share = math.sqrt(min(max(kinetic - least, 0.0) / most, 1.0)) if most > 0.0 else 1.0
         return rigid + share * beside
 
+    def _rounding(self) -> float:
+        """Elastic energy that is rounding."""
+        mu, lam = self._body.definition.material.lame
+        return (lam + 2.0 * mu) * float(self._body.system.volumes.numpy().sum()) * _ROUNDING**2
+
+    def _fill(self, state: newton.State, kept: _Kept, inherited: np.ndarray) -> None:
+        """Go towards the inherited places as far as there is no more elastic energy than there was.
+
+        A convex energy lies below its secants, so that a share found by a secant has none too much.
+        """
+        least = self._elastic(state)
+        if kept.elastic - least <= _FILLED * kept.elastic + self._rounding():
+            return
+        rest, places = self._rest(), self._rows(state.particle_q)
+        way, share = inherited - (places - rest), 1.0
+        for _ in range(_SECANTS):
+            self._write(state.particle_q, places + share * way)
+            elastic = self._elastic(state)
+            if least < elastic <= kept.elastic:
+                return
+            if elastic <= least:
+                break
+            share *= (kept.elastic - least) / (elastic - least)
+        self._write(state.particle_q, places)
+
     def _relax(self, state: newton.State, kept: _Kept, journal: Journal) -> None:
         """Take off what elastic energy there is above what there was."""
         body, system = self._body, self._body.system
-        mu, lam = body.definition.material.lame
-        rounding = (lam + 2.0 * mu) * float(system.volumes.numpy().sum()) * _ROUNDING**2
-        allowed = kept.elastic * (1.0 + _RISE) + rounding
+        allowed = kept.elastic * (1.0 + _RISE) + self._rounding()
         if self._elastic(state) <= allowed:
             return
         record = (system.record.counts, system.record.residuals)
@@ -177,7 +211,8 @@ class MotionFit:
         gravity = wp.zeros(1, dtype=wp.vec3, device=body.device)
         edges = body.cage.vertices[body.cage.mesh.edges]
         cell = float(np.median(np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1)))
-        time = _SHORTEST * cell / math.sqrt((lam + 2.0 * mu) / body.definition.material.density)
+        mu, lam = body.definition.material.lame
+        time = _SHORTEST * cell * math.sqrt(body.definition.material.density / (lam + 2.0 * mu))
         least, best = math.inf, None
         for _ in range(_DOUBLINGS):
             system.step(places, still, moved, wp.zeros_like(still), time, gravity=gravity)
