@@ -36,12 +36,12 @@ def cut_through(surface: Surface, blades=BLADES, steps: int = 4):
         cage = edit.cage
 
 
-def closed_volume(surface: Surface) -> tuple[float, int]:
-    """Volume in the closed components, and their number."""
+def closed_volume(surface: Surface) -> float:
+    """Volume in the closed components."""
     mesh = surface.mesh
     is_open = np.zeros(mesh.component_count, dtype=bool)
     is_open[mesh.face_component[mesh.face[mesh.twin < 0]]] = True
-    return float(mesh.component_volumes[~is_open].sum()), int(np.count_nonzero(~is_open))
+    return float(mesh.component_volumes[~is_open].sum())
 
 
 def check_sheets(surface: Surface) -> None:
@@ -51,7 +51,6 @@ def check_sheets(surface: Surface) -> None:
     border = mesh.twin < 0
     for ends in (mesh.face_vertex[border], mesh.destination[border]):
         assert np.bincount(ends).max(initial=0) <= 1
-    assert np.bincount(mesh.face_vertex, minlength=surface.site_count).min() > 0
 
 
 def skin_area(surface: Surface) -> float:
@@ -84,15 +83,25 @@ def test_open_sheets_get_no_caps(name):
     surface = Surface(points, triangles)
     np.testing.assert_array_equal(surface.points[: len(points)], points)
     assert surface.mesh.component_count == count
-    assert closed_volume(surface)[0] == pytest.approx(volume)
+    assert closed_volume(surface) == pytest.approx(volume)
     area = skin_area(surface)
     check_sheets(surface)
     for now in cut_through(surface):
         check_sheets(now)
         assert skin_area(now) == pytest.approx(area)
-        assert closed_volume(now)[0] == pytest.approx(volume)
+        assert closed_volume(now) == pytest.approx(volume)
     assert (now.triangle_cap >= 0).any() == (volume > 0.0)
     assert now.mesh.component_count > count
+
+
+def is_cuttable(surface: Surface) -> bool:
+    """Whether a surface is not refused for an edge along which a sheet touches itself."""
+    try:
+        surface.refuse_branches()
+    except ValueError as error:
+        assert "touch along it and hang together around both of its ends" in str(error)
+        return False
+    return True
 
 
 @settings(max_examples=40, deadline=None)
@@ -100,7 +109,8 @@ def test_open_sheets_get_no_caps(name):
 def test_any_triangles_become_sheets(seed):
     """Random triangles over few points, boxes of a lattice, turned and doubled at random: sheets, before and after."""
     rng = np.random.default_rng(seed)
-    if rng.integers(2):
+    is_soup = bool(rng.integers(2))
+    if is_soup:
         points = rng.uniform(0.2, 0.8, (rng.integers(4, 9), 3))
         triangles = rng.integers(0, len(points), (rng.integers(1, 25), 3))
         if not ((triangles != np.roll(triangles, 1, axis=1)).all(axis=1)).any():
@@ -112,14 +122,17 @@ def test_any_triangles_become_sheets(seed):
         turned = rng.random(len(triangles)) < rng.choice([0.0, 0.1])
         triangles[turned] = triangles[turned, ::-1]
     surface = Surface(points, triangles)
-    surface.refuse_branches()
-    volume, count = closed_volume(surface)
+    if is_soup and not is_cuttable(surface):
+        return
+    check_sheets(surface)
+    volume = closed_volume(surface)
     area = skin_area(surface)
     for now in cut_through(surface, BLADES[:2], steps=3):
-        now.refuse_branches()
+        check_sheets(now)
         assert skin_area(now) == pytest.approx(area)
-        assert closed_volume(now)[0] == pytest.approx(volume, abs=1e-12)
-        assert closed_volume(now)[1] >= count
+        if surface.closed:  # of an open sheet a cut may take a closed piece off, such as the end of a cone
+            assert now.closed
+            assert closed_volume(now) == pytest.approx(volume, abs=1e-12)
 
 
 def test_what_is_given_of_triangles_goes_along():

@@ -25,9 +25,9 @@ from ..geometry import (
     winding_numbers,
 )
 from .attributes import Attributes
-from .draft import Draft
-from .open_edges import open_notes
-from .repairs import Repairs
+from .preparing.draft import Draft
+from .preparing.open_edges import open_notes
+from .preparing.repairs import Repairs
 from .surface_arguments import as_rows
 
 _CANCELLED = 1e-9

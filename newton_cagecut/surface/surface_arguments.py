@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry import as_floats, as_integers, as_number, as_points, check_finite
-from .welding import WELD
+from .preparing.welding import WELD
 
 _FLAT = 1e-13
 

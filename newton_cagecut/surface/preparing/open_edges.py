@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry import PolygonMesh
+from ...geometry import PolygonMesh
 from .welding import WELD, open_half_edges
 
 _WIDTH = 1e-3

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..geometry import PolygonMesh
+from ...geometry import PolygonMesh
 from .fans import Fans
 from .orientation import connected_parts, find_turned
 

@@ -12,12 +12,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..geometry import PolygonMesh
-from .attributes import Attributes
+from ...geometry import PolygonMesh
+from ..attributes import Attributes
+from ..surface_arguments import as_labels, as_point_values, as_triangles, as_uvs, as_weld, check_flat
+from .manifold_sheets import find_sheets, repeated
 from .parting import Parting
 from .repairs import Repairs
-from .sheets import find_sheets, repeated
-from .surface_arguments import as_labels, as_point_values, as_triangles, as_uvs, as_weld, check_flat
 from .welding import weld_seams
 
 
