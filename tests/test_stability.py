@@ -13,8 +13,9 @@ from PIL import Image
 
 from newton_cagecut import Material
 from newton_cagecut.__main__ import main
-from newton_cagecut.report.stability import solid_answers, stability_run, sweep
-from newton_cagecut.report.stability.answers import bending_mode, flip_time, swing, tip_deflection
+from newton_cagecut.report.stability import stability_run, sweep
+from newton_cagecut.report.stability.answers import solid_answers
+from newton_cagecut.report.stability.answers.book_answers import bending_mode, flip_time, swing, tip_deflection
 from newton_cagecut.report.stability.equal_error import equal_error
 from newton_cagecut.report.stability.kept import FILE, KeptOutcomes
 from newton_cagecut.report.stability.limits import LIMITS, limits_of

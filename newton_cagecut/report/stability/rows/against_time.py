@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from ....elastic import Material
-from ..answers import tip_deflection
+from ..answers.book_answers import tip_deflection
 from ..outcome import Outcome
 from ..workbench import BAR, Workbench
 from .tetrahedra import SOLVERS, Grid
@@ -67,7 +67,7 @@ ROWS: tuple[tuple[str, Callable[[Workbench], Outcome], bool], ...] = (
         (
             f"SolverCageCut: pushed, Poisson {poisson}, {segments} segments",
             partial(ours, poisson=poisson, segments=segments),
-            poisson == 0.3 and segments == 2,
+            False,
         )
         for poisson in _POISSON
         for segments in (2, 4, 8, 16)

@@ -13,9 +13,9 @@ import numpy as np
 
 from ....elastic import Material
 from ....section import Blade
-from ..answers import bending_mode, tip_deflection
+from ..answers.book_answers import bending_mode, tip_deflection
+from ..answers.solid_answers import ELEMENTS, bar_deflection, bracket_deflection, crack_opening, torsion_energy
 from ..outcome import Outcome
-from ..solid_answers import ELEMENTS, bar_deflection, bracket_deflection, crack_opening, torsion_energy
 from ..trial import Trial
 from ..workbench import BAR, BRACKET, Workbench
 

@@ -9,9 +9,9 @@ from functools import cache
 
 import numpy as np
 
-from ...elastic import Material
+from ....elastic import Material
+from ..shapes import Blocks, bar, bracket
 from .solid import Solid
-from .shapes import bar, bracket
 
 ELEMENTS = "quadratic finite elements"
 _NEAR = 1.0e-6
@@ -86,7 +86,10 @@ def crack_opening(size: tuple[float, float, float], poisson: float) -> float:
         poisson: Poisson's ratio.
     """
     half = (0.5 * size[0], size[1], size[2])
-    blocks = bar(1, half)
+    # Symmetric about the cut; elements get smaller towards its front, where stresses are infinite.
+    apart = np.concatenate([[0.0], 0.5 ** np.arange(7.0, -1.0, -1.0)])
+    axes = (half[0] * (1.0 - apart[::-1]), bar(1, half).axes[1], 0.5 * half[2] * np.append(-apart[:0:-1], apart))
+    blocks = Blocks(axes, np.ones([len(axis) - 1 for axis in axes], dtype=bool))
 
     def held(places: np.ndarray) -> np.ndarray:
         end, joined = places[0] < _NEAR, (places[0] > half[0] - _NEAR) & (places[2] < _NEAR)
@@ -95,9 +98,9 @@ def crack_opening(size: tuple[float, float, float], poisson: float) -> float:
     def moved(places: np.ndarray) -> np.ndarray:
         return np.stack([-0.5 * (places[0] < _NEAR), 0.0 * places[0], 0.0 * places[0]])
 
-    found = Solid(blocks, Material(young=1.0, poisson=poisson), min(size) / 8.0).solve(held, moved=moved)
+    found = Solid(blocks, Material(young=1.0, poisson=poisson), 0.5 * size[1]).solve(held, moved=moved)
     vertices = blocks.cage().vertices
-    mouth = vertices[(vertices[:, 0] > half[0] - _NEAR) & (vertices[:, 2] > 0.0)]
+    mouth = vertices[(vertices[:, 0] > half[0] - _NEAR) & (vertices[:, 2] > 0.5 * half[2] - _NEAR)]
     return -2.0 * found.mean(mouth, 0)
 
 

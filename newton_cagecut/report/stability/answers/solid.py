@@ -9,8 +9,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...elastic import Material
-from .shapes import Blocks
+from ....elastic import Material
+from ..shapes import Blocks
 
 _INTEGRATION = 4
 
