@@ -227,8 +227,12 @@ class BoundaryFit:
         if face is not None:
             inward = np.where(face >= 0, -INWARD * self.frame.half_side, 0.0)
             points = points + inward[:, None] * self.outward(face)
-        slopes = self.gradients(points, piece, rows) * self.frame.half_side
-        return make_slopes_exact(self._affine, piece, slopes) / self.frame.half_side
+        return self.exact_slopes(piece, self.gradients(points, piece, rows))
+
+    def exact_slopes(self, piece: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+        """Gradients [1/m] made exact: see ``slopes``. Those of points of piece -1 stay as they are."""
+        side = self.frame.half_side
+        return make_slopes_exact(self._affine, piece, slopes * side) / side
 
     def _on_faces(self, faces: list[int], unit: list[np.ndarray]) -> list[np.ndarray]:
         """Boundary functions of faces at points of theirs, shape (point_count, corner_count) each."""
