@@ -18,6 +18,9 @@ from ..launch import launch
 from ..walks.random import make_direction
 from ..walls.frame import UnitFrame
 
+_SHORTEST = 1e-6
+"""Least distance from the walls that gradients divide by: nearer points have none that anyone uses."""
+
 
 @dataclass(frozen=True, eq=False)
 class LandingResiduals:
@@ -69,7 +72,7 @@ def landing_residuals(
     values = residual.mean(axis=1)
     spread = residual - values[:, None]
     squared_errors = (spread**2).sum(axis=1) / (walks * (walks - 1))
-    scale = cage.dimension / (radius * frame.half_side)
+    scale = cage.dimension / (np.maximum(radius, _SHORTEST) * frame.half_side)
     direction = _directions(indices, walks, seed, cage.dimension)
     slopes = np.einsum("iwv,iwd->ivd", spread, direction) / (walks - 1) * scale[:, None, None]
     return LandingResiduals(values, slopes, squared_errors, squared_errors.sum(axis=1) * scale**2)
