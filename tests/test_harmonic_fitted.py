@@ -21,7 +21,7 @@ from harmonic_shapes import (
     points_inside,
     small_obstacle,
 )
-from newton_cagecut.cage import Cut
+from newton_cagecut.cage import Cage, Cut
 from newton_cagecut.harmonic import HarmonicCoordinates, closed_form_weights
 from newton_cagecut.harmonic.options import WalkOptions
 from newton_cagecut.section import Blade
@@ -163,7 +163,14 @@ def test_walks_correct_gradients_where_they_can():
 def test_bias_of_tables():
     """Tables of what the fit leaves over change the weights by far less than it leaves over."""
     cut = Cut(box(), Blade([0.5, 0.5, 0.5], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]))
-    for cage, points in ((cut.advance(to=0.5).cage, points_inside(box(), 20, 3)), (slit_square(), around_the_tip(20))):
+    turn = np.linalg.qr(np.random.default_rng(6).normal(size=(3, 3)))[0]
+    turn[:, 0] *= np.linalg.det(turn)
+    turned = Cage((box().vertices @ turn).astype(np.float32), box().faces)  # planar as far as files tell
+    for cage, points in (
+        (cut.advance(to=0.5).cage, points_inside(box(), 20, 3)),
+        (slit_square(), around_the_tip(20)),
+        (turned, points_inside(box(), 20, 3) @ turn),
+    ):
         found = closed_form_weights(cage, points, 64, 5, quads="harmonic" if cage.dimension == 3 else None)
         told = np.sqrt(np.mean(found.squared_errors))
         assert np.sqrt(np.mean(found.table_bias**2)) < 0.5 * told
