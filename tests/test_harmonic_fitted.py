@@ -22,7 +22,7 @@ from harmonic_shapes import (
     small_obstacle,
 )
 from newton_cagecut.cage import Cage, Cut
-from newton_cagecut.harmonic import HarmonicCoordinates, closed_form_weights
+from newton_cagecut.harmonic import HarmonicCoordinates, choose_correction, closed_form_weights
 from newton_cagecut.harmonic.options import WalkOptions
 from newton_cagecut.section import Blade
 from plane_reference import PlaneReference, plane_reference
@@ -31,7 +31,7 @@ from plane_shapes import loops_of
 
 def fitted(cage, points, walks: int = 0, **options) -> HarmonicCoordinates:
     """Coordinates by the fit alone, or with walks."""
-    return HarmonicCoordinates(cage, points, walks, correction="fitted", **({"quads": "harmonic"} | options))
+    return HarmonicCoordinates(cage, points, walks, **({"correction": "fitted", "quads": "harmonic"} | options))
 
 
 def results(coordinates: HarmonicCoordinates) -> dict[str, np.ndarray]:
@@ -215,6 +215,25 @@ def test_other_edits():
     walked = copies(coordinates.cage, points, 1024, 12, quads="harmonic")[0]
     error = walked.std(axis=0, ddof=1) / np.sqrt(12)
     assert np.sqrt(np.mean((coordinates.weights - walked.mean(axis=0)) ** 2)) < np.sqrt(np.mean(error**2)) + 1e-3
+
+
+def test_choice_by_size(tmp_path):
+    """By "auto" a cage that a fit is quick for has one, others are walked for; a file keeps what was chosen."""
+    points = points_inside(box(), 6, 0)
+    chosen = fitted(box(), points, 4, correction="auto")
+    assert_identical(results(chosen), results(fitted(box(), points, 4)))
+    path = tmp_path / "chosen.cagecut"
+    chosen.save(path)
+    loaded = HarmonicCoordinates.load(path, chosen.cage, points, correction="auto")
+    assert_identical(results(loaded), results(chosen))
+    large = box().triangulated()
+    while sum(map(len, large.faces)) <= 2000:
+        large = large.refine()
+    assert choose_correction(large).correction == "harmonic"
+    found = HarmonicCoordinates(large, points, 8, correction="auto")
+    assert np.array_equal(found.weights, HarmonicCoordinates(large, points, 8).weights)
+    with pytest.raises(ValueError, match="walks must be a whole number from 1 "):
+        HarmonicCoordinates(large, points, 0, correction="auto")
 
 
 def test_options():

@@ -60,7 +60,6 @@ def landing_residuals(
         radius: Distance of the points from the walls in the frame, shape (n,).
     """
     cage = fit.cage
-    face = landings["face"]
     place = landings["point"][:, : cage.dimension].astype(np.float64) * frame.half_side + frame.center
     residual = fit.residuals_at(place, landings["face"])
     residual = residual.reshape(len(indices), walks, -1)
