@@ -49,7 +49,7 @@ def page_of(report: dict, rows: Sequence[Row]) -> tuple[str, list[Chart]]:
 def _heading(report: dict, count: int) -> str:
     settings, machine = report["settings"], report["machine"]
     return (
-        f"Made by `python -m newton_cagecut report{' --quick' if settings['name'] == 'quick' else ''}` on "
+        f"Made by `python -m newton_cagecut report --effort {settings['name']}` on "
         f"{machine['device']} ({machine['processor']}, {machine['cores']} cores), from {count} measurements. Seeds "
         f"{', '.join(map(str, settings['seeds']))}; those of the references from 1000 and 2000 on. All figures are in "
         "`report.json`."
