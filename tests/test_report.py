@@ -134,7 +134,7 @@ def test_page_shows_its_figures(report):
         assert f"{part}\n" in text or part in text
     assert "cagecut.HarmonicCoordinates(cage, points, walks=" in text
     assert "![small: error against run time](error_small.png)" in text
-    for method in ("walks, affine (the paper)", "fit, and walks", "finite elements, P2"):
+    for method in ("walks, affine (the paper)", "boundary fit, and walks", "finite elements, P2"):
         assert method in text
 
 

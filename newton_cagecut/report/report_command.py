@@ -48,7 +48,9 @@ def add_options(parser: ArgumentParser) -> None:
         default="full",
         help="how much is measured: on two cores a minute a scene, five, or fifteen (full)",
     )
-    effort.add_argument("--quick", action="store_const", dest="effort", const="quick", help="the same as --effort quick")
+    effort.add_argument(
+        "--quick", action="store_const", dest="effort", const="quick", help="the same as --effort quick"
+    )
     parser.add_argument("--out", metavar="DIR", type=Path, default=Path("report"), help="folder to write to (./report)")
 
 

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from ..measurement import Row
 from ..record_store import records_of
-from .chart import Chart, draw
+from .chart import Chart
+from .drawing import draw
 from .markdown import markdown_lines, section_lines
 
 FILE = "report.md"

@@ -23,15 +23,15 @@ _Y_LABELS = {
     "gradients": "relative error of gradients",
     "surface": "error of the deformed surface / diameter",
 }
-_DRAWN = ("weights", "gradients")
+_GAINED = ("weights", "gradients")
 _PAPER = "affine"
 _TEXT = (
     "Root mean square over the points: of the Euclidean norm of the errors of all of a point's weights; of that of its "
     "gradients, relative to the gradients; of where a smooth motion takes it, relative to the cage's diameter. Times "
     "are for all points, from the cage to the weights, kernels compiled before. The fit begins without walks. Half way "
-    "through the cut, walks are updated by the last step of 3 % (filled) or all walked again (hollow, dashed), which "
-    "gives the same weights bit for bit; the finite elements are meshed and solved again (hollow, dashed: the time "
-    "without meshing). Errors near the grey band cannot be told from those of the reference."
+    "through the cut, walks are updated by the last step of 3 % or all walked again, which gives the same weights bit "
+    "for bit; the finite elements are meshed and solved again. Errors near the grey band cannot be told from those of "
+    "the reference."
 )
 
 
@@ -103,11 +103,11 @@ def _gains(records: Sequence[Record], scenes: Sequence[str]) -> Table:
         for stage in STAGES:
             cells = []
             for correction in (name for name in CORRECTIONS if name != _PAPER):
-                for kind in _DRAWN:
+                for kind in _GAINED:
                     curves = [walk_curve(records, scene, name, stage, kind) for name in (_PAPER, correction)]
                     cells.append("" if any(curve.empty for curve in curves) else _gain(*curves))
             rows.append([scene, _TITLES[stage], *cells])
-    head = [f"{kind}, {name}" for name in CORRECTIONS if name != _PAPER for kind in _DRAWN]
+    head = [f"{kind}, {name}" for name in CORRECTIONS if name != _PAPER for kind in _GAINED]
     title = (
         "Squared error of the paper's method (affine) over that of another correction, at equal run time: the least "
         "of squared error times time over the runs of each, because the one falls as the other grows. The reference's "
@@ -123,7 +123,7 @@ def _gain(paper: Curve, other: Curve) -> str:
 
 
 def _chart(records: Sequence[Record], scene: str) -> Chart:
-    panels = [[_panel(records, scene, stage, kind) for stage in STAGES] for kind in _DRAWN]
+    panels = [[_panel(records, scene, stage, kind) for stage in STAGES] for kind in KINDS]
     return Chart(f"error_{scene}", f"{scene}: error against run time", panels)
 
 
@@ -133,12 +133,12 @@ def _panel(records: Sequence[Record], scene: str, stage: str, kind: str) -> Pane
         lines.append(_line(curve, curve.label, marker="s" if curve.label.startswith("finite") else "o"))
     for correction in WALKED if stage == "during" else ():
         whole = walk_curve(records, scene, correction, stage, kind, seconds="whole_seconds")
-        lines.append(_line(whole, f"{whole.label}, all again", like=whole.label))
+        lines.append(_line(whole, "all walked again", like=whole.label))
     solve = element_curve(records, scene, 2, stage, kind, seconds="solve_seconds")
-    lines.append(_line(solve, f"{solve.label}, mesh given", like=solve.label, marker="s"))
+    lines.append(_line(solve, "elements without the time of meshing", like=solve.label, marker="s"))
     floors = [record.values["own"][kind] for record in chosen(records, "reference", scene, stage=stage)]
     floor = float(np.sqrt(floors[0])) if floors else None
-    return Panel(_TITLES[stage], "time [s]", _Y_LABELS[kind], [line for line in lines if len(line.x)], floor)
+    return Panel(_TITLES[stage], "run time [s]", _Y_LABELS[kind], [line for line in lines if len(line.x)], floor)
 
 
 def _line(curve: Curve, label: str, **options: str) -> Line:
