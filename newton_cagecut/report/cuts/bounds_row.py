@@ -50,7 +50,7 @@ class BoundsRow:
             "would be perfect (figure 13 of the paper, which compares a sphere, a box and a DOP)."
         )
         lines = [Line(KINDS[kind], flagged[kind], range(len(scenes))) for kind in KINDS]
-        panel = Panel("", "walks flagged for each walk changed", "", lines, rows=scenes, mark=1.0)
+        panel = Panel("", "walks flagged for each walk changed", "", lines, rows=scenes, mark=1.0, logarithmic="")
         head = ["scene", "changed %", *(f"{name} %" for name in KINDS.values())]
         yield Section(
             "Bounding volumes", [text], [Table("", head, rows)], [Chart("bounds", "Bounding volumes", [[panel]])]

@@ -61,7 +61,7 @@ class ReplayRow:
         lines.append(
             Line("chance alone", [1e3 * each["replay"]["noise"] for each in found], range(len(scenes)), marker="|")
         )
-        panel = Panel("", "distance of the mean landing from the point [diameter / 1000]", "", lines, rows=scenes)
+        panel = Panel("", "distance of the mean landing [diameter / 1000]", "", lines, rows=scenes)
         head = ["scene", "walks met [%]", "replayed", "of it chance", "restarted", "of it chance"]
         chart = Chart("replay", "Replayed or restarted", [[panel]])
         yield Section("Replay of walks", [text], [Table("", head, rows)], [chart])

@@ -53,7 +53,9 @@ def draw(chart: Chart, folder: Path) -> None:
     with matplotlib.rc_context({**matplotlib.rcParamsDefault, **_STYLE, "backend": "agg"}):
         rows, columns = len(chart.panels), max(map(len, chart.panels))
         height = max([3.1, *(1.0 + 0.3 * len(panel.rows) for row in chart.panels for panel in row)])
-        figure = Figure(figsize=(4.5 * columns, height * rows + 1.0), layout="constrained", facecolor=_PAPER)
+        figure = Figure(
+            figsize=(4.5 * columns if columns > 1 else 6.4, height * rows + 1.0), layout="constrained", facecolor=_PAPER
+        )
         axes = figure.subplots(rows, columns, squeeze=False, sharey="row" if chart.shared else False)
         colors = _colors_of(chart)
         for places, panels in zip(axes, chart.panels):
