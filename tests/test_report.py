@@ -122,7 +122,8 @@ def test_page_is_made_from_the_file_alone(report, tmp_path):
     """Page and plots of the same file are the same, byte for byte."""
     write_page(read_report(report / "report.json"), ROWS, tmp_path)
     names = sorted(path.name for path in tmp_path.iterdir())
-    assert names == ["error_small.png", "error_small.svg", "growth.png", "growth.svg", "report.md"]
+    charts = ("bounds", "course", "error_small", "gains", "growth", "locality", "replay", "steps")
+    assert names == sorted([*(f"{name}.{ending}" for name in charts for ending in ("png", "svg")), "report.md"])
     for name in names:
         assert (tmp_path / name).read_bytes() == (report / name).read_bytes(), name
 
