@@ -131,7 +131,7 @@ def as_walks(walks: int | None, seed: int, options: dict[str, object]) -> int:
     """Walks a point, checked with the other options of the body's coordinates.
 
     Args:
-        walks: What was passed; None for 256 on a CPU and 2048 (the paper's) on CUDA.
+        walks: What was passed; None for 256 on a CPU and 2048 (the paper's) on CUDA, or 0 of fitted weights.
         seed: Seed.
         options: Further keyword options of ``HarmonicCoordinates``.
 
@@ -139,6 +139,8 @@ def as_walks(walks: int | None, seed: int, options: dict[str, object]) -> int:
         TypeError: There is no such option.
         ValueError: A value is out of its range.
     """
+    if walks is None and options.get("correction") == "fitted":
+        walks = 0
     if walks is None:
         walks = 2048 if wp.get_device().is_cuda else 256
     check_options({"walks": walks, "seed": seed, **options}, "add_cage_body")

@@ -21,6 +21,7 @@ import warp as wp
 from ..cage import Cage, check_inside
 from ..elastic import Material
 from ..geometry import as_flag, as_instance
+from ..harmonic import chosen_correction
 from ..surface import Surface
 from . import body_arguments as arguments
 from .body.capacity import Capacity
@@ -120,7 +121,7 @@ def add_cage_body(
         velocity: Initial velocity [m/s]; fixed vertices do not travel with it.
         fixed: Cage vertices that no step moves: their indices, or a mask over all; to move them, write targets
             to ``control.cagecut.target_q``. A vertex that a cut makes on a face, among fixed ones, is fixed too.
-        walks: Walks a point; 256 on a CPU and 2048 (the paper's) on CUDA by default.
+        walks: Walks a point; 256 on a CPU and 2048 (the paper's) on CUDA by default, none of fitted weights.
         quadrature: Wanted number of quadrature points, by default 8 for each cage vertex and at least 300. 0 makes a
             body that is moved by its cage vertices alone, without elasticity.
         capacity: Room for cuts, by default ``Capacity.for_cuts(cage, surface)``, for a dozen of them.
@@ -150,6 +151,8 @@ def add_cage_body(
     surface = arguments.as_surface(mesh, weld=weld, data=data)
     thickness = arguments.as_thickness(thickness, cage, surface)
     check_inside(cage, surface.points)
+    if "correction" in options:
+        options["correction"] = chosen_correction(options["correction"], cage)
     labels = builder.custom_attributes["cagecut:body_label"].values or []
     index = len(labels)
     definition = BodyDefinition(
