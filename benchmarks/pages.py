@@ -95,8 +95,8 @@ def machine(report: dict) -> list[str]:
     """What it was measured on."""
     found, effort = report["machine"], report["settings"]["name"]
     return [
-        f"On {found['cores']} cores of an {found['processor']} without a GPU, shared with other work (compare times only",
-        f"with each other): {len(report['records'])} measurements by",
+        f"On {found['cores']} cores of an {found['processor']} without a GPU, shared with other work (compare times",
+        f"only with each other): {len(report['records'])} measurements by",
         f"`python -m newton_cagecut report --effort {effort}`.",
         "[docs/report](docs/report/report.md) has all of the tables and plots.",
     ]

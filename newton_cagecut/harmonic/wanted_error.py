@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -37,16 +37,21 @@ def walks_for_error(variance: float, error: float) -> int:
 def chosen_walks(
     walks: int | str | None,
     error: float | None,
+    make: Callable[..., object],
+    domain: object,
     points: np.ndarray,
-    run: Callable[[np.ndarray, int, int], np.ndarray],
+    options: Mapping[str, object],
 ) -> int | str | None:
     """The walks that were passed, or those for a wanted error.
 
     Args:
         walks: What was passed; "auto" chooses. A number stands beside no error.
         error: Wanted error; None for that of "auto", or for the walks as they are.
+        make: Makes coordinates: ``HarmonicCoordinates``.
+        domain: The cage, or the domain that they share.
         points: The points, of which some are walked from.
-        run: Returns weights of points by a number of walks and a seed.
+        options: Options of the coordinates. With control variates there are never fewer walks than those of the short
+            runs, as fewer leave lower degrees.
 
     Raises:
         TypeError: The error is no number.
@@ -60,7 +65,8 @@ def chosen_walks(
     some = points[:: max(1, len(points) // _POINTS)]
     found = 1
     for count in (_FIRST, _SECOND):
-        one, other = (np.asarray(run(some, count, seed), dtype=np.float64) for seed in _SEEDS)
+        runs = [make(domain, some, count, seed, cuttable=False, **options).weights for seed in _SEEDS]
+        one, other = (weights.astype(np.float64) for weights in runs)
         squared = 0.5 * ((one - other) ** 2).sum(axis=1).mean() if len(some) else 0.0
         found = walks_for_error(float(squared) * count, wanted)
         if found <= count:
@@ -70,4 +76,4 @@ def chosen_walks(
             f"an error of {wanted:g} takes {found} walks a point, and {MOST_WALKS} is the most; ask for "
             f'{math.sqrt(float(squared) * count / MOST_WALKS):.1g} or more, or take correction="fitted"'
         )
-    return found
+    return max(found, _FIRST) if options.get("correction") == "harmonic" else found
