@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Collection, Mapping, Sequence
 
 import newton
@@ -46,6 +47,20 @@ def as_surface(
     if isinstance(mesh, tuple) and len(mesh) == 2:
         return Surface(*mesh, weld=weld, data=data)
     raise TypeError(f"mesh must be a Surface, a newton.Mesh or (points, triangles), got {type(mesh).__name__}")
+
+
+def check_cuttable(surface: Surface) -> None:
+    """Warn of what was done to a mesh so that it can be cut, and of what cuts will leave open.
+
+    Args:
+        surface: The surface of a body.
+
+    Raises:
+        ValueError: A sheet of it touches itself along an edge and cannot be cut.
+    """
+    surface.refuse_branches()
+    if surface.notes:
+        warnings.warn(f"the mesh of the body: {'; '.join(surface.notes)}", stacklevel=3)
 
 
 def as_material(material: Material | None) -> Material:
