@@ -9,8 +9,8 @@ from newton._src.viewer.kernels import compact
 from PIL import Image
 
 from examples import __main__ as dispatcher
-from examples.cutting import PlannedCut, along, frames_of
-from examples.scene import CutScene
+from examples.base import CutScene, PlannedCut, along, frames_of
+from examples.gallery import __main__ as gallery
 from newton_cagecut import Blade, Cage
 from newton_cagecut.usd import validate_animation
 
@@ -67,6 +67,50 @@ def test_gingerbread_man_is_cut_down(monkeypatch, tmp_path):
     assert validate_animation(usd) == []
 
 
+def test_minimal_scene_stands_alone(monkeypatch):
+    """The scene without the base class runs as the others do, and its ball is in two."""
+    scene = run(monkeypatch, "minimal", "--viewer", "null", "--quiet", "--test", "--num-frames", "42")
+    assert (scene.cut.complete, len(scene.solver.pieces(0))) == (True, 2)
+
+
+@pytest.mark.parametrize(
+    ("name", "frames", "cuts"),
+    [("keyframed", 20, 2), ("texture", 14, 2), ("dude", 44, 1), ("key", 24, 3), ("surgery", 24, 1)],
+)
+def test_scene_passes_its_own_test(monkeypatch, name: str, frames: int, cuts: int):
+    """All cuts are made, and the scene's success criteria are met."""
+    scene = run(monkeypatch, name, *FAST, "--num-frames", str(frames))
+    assert scene.schedule.current == cuts
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "frames", "cuts"), [("octopus", 22, 3), ("jelly", 15, 2), ("sphere", 14, 2)])
+def test_larger_scene_passes_its_own_test(monkeypatch, name: str, frames: int, cuts: int):
+    """The same of scenes with large cages, many points, or cuts through all of a body."""
+    scene = run(monkeypatch, name, *FAST, "--num-frames", str(frames))
+    assert scene.schedule.current == cuts
+
+
+def test_worlds_are_cut_at_once(monkeypatch):
+    """Each of four worlds has a body of its own, cut in half at an angle of its own."""
+    scene = run(monkeypatch, "worlds", *FAST, "--num-frames", "6", "--worlds", "4")
+    assert [len(scene.solver.pieces(k)) for k in range(4)] == [2, 2, 2, 2]
+
+
+def test_sprout_grows(monkeypatch, tmp_path):
+    """Coordinates alone follow a cage that is extruded, into files too."""
+    usd, png = tmp_path / "sprout.usd", tmp_path / "sprout.png"
+    scene = run(monkeypatch, "extrude", *FAST, "--num-frames", "30", "--usd", str(usd), "--picture", str(png))
+    assert (scene.cage.vertex_count, validate_animation(usd)) == (16, [])
+    assert np.array(Image.open(png)).std() > 10.0
+
+
+def test_own_mesh_gets_a_cage(monkeypatch):
+    """An OBJ file is wrapped into a cage and cut."""
+    scene = run(monkeypatch, "own_mesh", *FAST, "--num-frames", "10")
+    assert len(scene.solver.pieces(0)) == 2
+
+
 def test_missing_display_is_explained(monkeypatch):
     """A window without a display is one sentence that says what goes without."""
 
@@ -84,15 +128,23 @@ def test_missing_display_is_explained(monkeypatch):
 def test_dispatcher_lists_the_scenes(monkeypatch, capsys):
     """Without a name, each scene is listed with one line."""
     run(monkeypatch)
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines[2:]] == list(dispatcher.SCENES)
-    assert all(len(line.split()) > 5 for line in lines[2:])
+    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
+    assert [line.split()[0] for line in lines] == list(dispatcher.SCENES)
+    assert all(len(line.split()) > 5 for line in lines)
+
+
+def test_every_scene_says_what_to_see():
+    """Each scene is short, says what its test checks, and has a loop in the gallery."""
+    for name in dispatcher.SCENES:
+        assert "Success criteria:" in dispatcher.description(name), name
+        assert len(dispatcher.scene_path(name).read_text().splitlines()) <= 120, name
+        assert (gallery.FOLDER / f"{name}.webp").stat().st_size < 1e6, name
 
 
 def test_dispatcher_refuses_an_unknown_scene(monkeypatch):
     """A wrong name is an error that lists the right ones."""
-    with pytest.raises(SystemExit, match=r"no scene 'octopus'[\s\S]*starfish[\s\S]*bunny"):
-        run(monkeypatch, "octopus")
+    with pytest.raises(SystemExit, match=r"no scene 'squid'[\s\S]*starfish[\s\S]*bunny"):
+        run(monkeypatch, "squid")
 
 
 def test_frames_of_a_plan_are_its_waits_and_its_steps():

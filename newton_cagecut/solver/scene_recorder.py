@@ -56,7 +56,7 @@ def _body_frame(body: SimulatedBody, state: newton.State) -> BodyFrame:
         points=body.surface_points(state).numpy().copy(),
         triangles=surface.triangles,
         triangle_cap=surface.triangle_cap,
-        rest_points=surface.mesh.vertices,
+        rest_points=surface.points,
         velocities=body.surface_velocities(state),
         uvs=None if body.is_plane and not has_uvs else surface.corner_uvs(body.cage.walls),
         has_skin_uvs=has_uvs,
