@@ -11,7 +11,7 @@ import warp as wp
 
 import newton_cagecut as cagecut
 
-CUBE = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+CUBE = [(x, y, z) for x in (-0.3, 0.3) for y in (-0.3, 0.3) for z in (-0.3, 0.3)]
 FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
 
 
@@ -19,19 +19,19 @@ class Example:
     def __init__(self, viewer, args=None):
         builder = newton.ModelBuilder()
         cagecut.SolverCageCut.register_custom_attributes(builder)
-        ball = newton.Mesh.create_sphere(0.9)
-        pose, cube = wp.transform((0, 0, 1), wp.quat_identity()), cagecut.Cage(CUBE, FACES)
-        cagecut.add_cage_body(builder, cube, ball, xform=pose, walks=64, contact_radius=0.01)
+        ball = newton.Mesh.create_sphere(0.28)
+        pose, cube = wp.transform((0, 0, 0.3), wp.quat_identity()), cagecut.Cage(CUBE, FACES)
+        cagecut.add_cage_body(builder, cube, ball, xform=pose, walks=64, contact_radius=0.004)
         builder.add_ground_plane()
         self.viewer, self.model, self.frame = viewer, builder.finalize(), 0
         self.solver, self.pipeline = cagecut.SolverCageCut(self.model), newton.CollisionPipeline(self.model)
         self.state_0, self.state_1, self.contacts = self.model.state(), self.model.state(), self.pipeline.contacts()
-        self.cut = self.solver.begin_cut(0, cagecut.Blade((0, 0, 0), (0, 1, 0), (0, 0, -1)))
+        self.cut = self.solver.begin_cut(0, cagecut.Blade((0.01, 0, 0), (0.3, 1, 0), (0, 0, -1)))
         viewer.set_model(self.model)
 
     def step(self):
         if not self.cut.complete:
-            self.solver.advance_cut(self.cut, 0.05, states=(self.state_0, self.state_1))
+            self.solver.advance_cut(self.cut, 0.015, states=(self.state_0, self.state_1))
         self.pipeline.collide(self.state_0, self.contacts)
         self.solver.step(self.state_0, self.state_1, None, self.contacts, 1.0 / 60.0)
         self.state_0, self.state_1, self.frame = self.state_1, self.state_0, self.frame + 1

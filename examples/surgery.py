@@ -29,7 +29,7 @@ CUTS = (along(CAGE, PATH, edge=(0.0, 0.0, 1.0), name="incision", wait=30, to_end
 class Example(CutScene):
     name = "surgery"
     frame_count = frames_of(CUTS) + 30
-    has_ground, ground = False, -0.2
+    has_ground, ground = False, -0.12
     skin_color, cap_color = (0.80, 0.42, 0.30), (0.50, 0.02, 0.03)
     camera = Camera(eye=(0.25, -1.25, 1.0), target=(0.0, -0.02, 0.0))
 

@@ -23,8 +23,8 @@ from .base import ASSETS, Camera, CutScene, PlannedCut, box_cage, frames_of, req
 
 RADII = (0.34, 0.27, 0.27)  # [m]
 CUTS = (
-    PlannedCut(name="in half", blade=cagecut.Blade((0, 0, 0), (0, 1, 0), (0, 0, -1)), wait=12, pieces=2),
-    PlannedCut(name="a wedge", blade=cagecut.Blade((0, 0, 0), (1, 0, 0), (0, 0.5, -1)), wait=0, pieces=4),
+    PlannedCut(name="in half", blade=cagecut.Blade((0.004, 0, 0), (0.2, 1, 0), (0, 0, -1)), wait=12, pieces=2),
+    PlannedCut(name="a wedge", blade=cagecut.Blade((0, 0.003, 0), (1, 0.1, 0), (0, 0.5, -1)), wait=0, pieces=4),
 )
 
 

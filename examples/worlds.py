@@ -58,7 +58,7 @@ class Example(CutScene):
         """Return the cut of each world, at angles that go round once over all."""
         count = self.args.worlds
         angles = np.pi * np.arange(count) / count
-        blades = [cagecut.Blade((0, 0, 0), (np.cos(a), np.sin(a), 0.0), (0, 0, -1)) for a in angles]
+        blades = [cagecut.Blade((0.007, 0.004, 0), (np.cos(a), np.sin(a), 0.0), (0, 0, -1)) for a in angles]
         return tuple(
             PlannedCut(name=f"world {k}", blade=blade, wait=8, body=k, pieces=2 * count)
             for k, blade in enumerate(blades)

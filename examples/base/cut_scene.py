@@ -31,6 +31,7 @@ class CutScene(Scene):
     skin_color: Color
     cap_color: Color
     paint_color: Color | None = None
+    shape_color: Color = (0.16, 0.18, 0.21)
     has_ground = True
 
     def build(self) -> None:
@@ -138,7 +139,8 @@ class CutScene(Scene):
             if paint.any():
                 name = f"{frame.name}_paint"
                 frames.append(replace(_part(frame, paint), name=name, skin_color=self.paint_color, cage_points=None))
-        return replace(whole, bodies=tuple(frames))
+        shapes = tuple(replace(shape, color=self.shape_color) for shape in whole.shapes)
+        return replace(whole, bodies=tuple(frames), shapes=shapes)
 
     def colored(self, body: CageBody, frame: BodyFrame) -> BodyFrame:
         """Return a body's frame in its colours."""

@@ -84,9 +84,9 @@ def render_loop(name: str, loop: Loop) -> list[Image.Image]:
 
 
 def draw(scene: object):
-    """Return the pixels of a scene as it is; one without the base class is looked at from afar."""
+    """Return the pixels of a scene as it is; one without the base class is looked at from a little above."""
     shown = scene.scene_frame() if hasattr(scene, "scene_frame") else scene.solver.scene_frame(scene.state_0)
-    camera = getattr(scene, "camera", Camera(eye=(2.2, -7.2, 4.2), target=(0.0, 0.0, 0.75)))
+    camera = getattr(scene, "camera", Camera(eye=(0.6, -2.1, 1.25), target=(0.0, 0.0, 0.2)))
     meshes = drawn_meshes(shown, cages=getattr(scene, "shows_cages", False))
     return render_pixels(meshes, camera, SIZE, ground=getattr(scene, "ground", 0.0), ray_count=RAY_COUNT)
 

@@ -16,7 +16,7 @@ from ..base import Camera, CutScene, PlannedCut, asset, frames_of, require
 
 HAT_HEIGHT = 0.743  # of the place where the hat sits on the head [m]
 BREEZE = (2.5, 0.0, 0.0)  # acceleration of what stands above the waist [m/s^2]
-GUST, GUST_FRAMES = (12.0, 0.0, 16.0), 8  # and of the hat when it is loose
+GUST, GUST_FRAMES = (9.0, 0.0, 15.0), 5  # and of the hat when it is loose
 CUTS = (
     PlannedCut(name="hat", blade=Blade((0.0, 0.0, HAT_HEIGHT), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)), wait=20, pieces=2),
 )

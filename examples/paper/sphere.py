@@ -19,7 +19,7 @@ from ..base import Camera, CutScene, PlannedCut, frames_of, require
 
 STAND_RADIUS, STAND_HEIGHT = 0.1, 0.25
 CUTS = tuple(
-    PlannedCut(name=name, blade=Blade((0.0, 0.0, 0.0), edge, (0.0, 0.0, -1.0)), wait=wait, pieces=pieces)
+    PlannedCut(name=name, blade=Blade((0.007, 0.004, 0.0), edge, (0.0, 0.0, -1.0)), wait=wait, pieces=pieces)
     for name, edge, wait, pieces in (
         ("in half", (1.0, 1.0, 0.0), 16, 2),
         ("in quarters", (1.0, -1.0, 0.0), 0, 4),
@@ -31,7 +31,7 @@ class Example(CutScene):
     name = "sphere"
     frame_count = frames_of(CUTS, step=0.05) + 35
     skin_color, cap_color = (0.80, 0.30, 0.03), (1.0, 0.68, 0.25)
-    camera = Camera(eye=(0.7, -3.2, 1.75), target=(0.0, 0.0, 0.42))
+    camera = Camera(eye=(0.8, -3.5, 2.0), target=(0.0, 0.0, 0.33))
 
     def add_bodies(self, builder: newton.ModelBuilder) -> None:
         self.add_asset(
