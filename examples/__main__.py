@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 GROUPS = {
+    "hands on": ("interactive",),
     "to start from": ("minimal", "keyframed", "own_mesh", "texture", "extrude"),
     "after the paper": ("starfish", "dude", "key", "octopus", "jelly", "sphere", "gingerbread"),
     "more": ("bunny", "surgery", "worlds"),

@@ -5,6 +5,7 @@
 from .assets import ASSETS, asset
 from .cut_scene import CutScene
 from .cutting import CutSchedule, PlannedCut, along, frames_of
+from .knife import knife_at
 from .picture import Camera
 from .scene import Scene, require
 from .shapes import box_cage, box_mesh
@@ -21,5 +22,6 @@ __all__ = [
     "box_cage",
     "box_mesh",
     "frames_of",
+    "knife_at",
     "require",
 ]

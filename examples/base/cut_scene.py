@@ -20,6 +20,7 @@ from newton_cagecut.usd import BodyFrame, SceneFrame
 from .assets import asset
 from .cutting import CutSchedule, PlannedCut
 from .picture import Color
+from .progress import say
 from .scene import Scene, require
 from .timings import Timings
 
@@ -41,8 +42,14 @@ class CutScene(Scene):
         if self.has_ground:
             builder.add_ground_plane()
         self.model = builder.finalize()
+        if self.args.demo:
+            say(1, "weights, by random walks from each point; the first time their kernels are compiled, for a minute")
         self.solver = SolverCageCut(self.model)
-        self.solver.warm_up()
+        if self.args.demo:
+            say(2, "compiling the kernels of steps, contacts and cuts; the next time they are found in Warp's cache")
+        self.solver.warm_up(progress=True if self.args.demo else None)
+        if self.args.demo:
+            say(3, f"{self.args.num_frames} frames, in which {len(self.cuts())} cuts are made, and the files")
         self.state_0, self.state_1 = self.model.state(), self.model.state()
         self.control = self.model.control()
         self.pipeline = newton.CollisionPipeline(self.model)

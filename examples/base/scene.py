@@ -20,6 +20,12 @@ from .picture import Camera
 from .progress import frame_bar
 from .recording import Recording
 
+_WHAT_NEXT = """
+Open {picture} for a look, and {usd} in usdview, Blender or any other viewer of USD for the animation.
+Next, in the environment that make has made (source .venv/bin/activate):
+  python -m examples                      lists the scenes
+  python -m examples texture --viewer gl  shows one in a window; --viewer viser in a browser
+README.md has a body that is cut in 25 lines, to start from."""
 _NO_DISPLAY = ("NoSuchDisplayException", "NoSuchConfigException", "NoSuchScreenModeException")
 
 
@@ -120,6 +126,8 @@ class Scene(ABC):
             newton.examples.run(scene, args)
         finally:
             scene.close()
+        if args.demo:
+            print(_WHAT_NEXT.format(picture=args.picture, usd=args.usd))
         return scene
 
     def _aim_viewer(self) -> None:
