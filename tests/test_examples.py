@@ -76,10 +76,11 @@ def test_minimal_scene_stands_alone(monkeypatch):
     ("name", "frames", "cuts"),
     [("keyframed", 20, 2), ("texture", 14, 2), ("dude", 44, 1), ("key", 24, 3), ("surgery", 24, 1)],
 )
-def test_scene_passes_its_own_test(monkeypatch, name: str, frames: int, cuts: int):
-    """All cuts are made, and the scene's success criteria are met."""
-    scene = run(monkeypatch, name, *FAST, "--num-frames", str(frames))
-    assert scene.schedule.current == cuts
+def test_scene_passes_its_own_test(monkeypatch, tmp_path, name: str, frames: int, cuts: int):
+    """All cuts are made, the scene's success criteria are met, and its animation is valid, with seams and textures."""
+    usd = tmp_path / f"{name}.usd"
+    scene = run(monkeypatch, name, *FAST, "--num-frames", str(frames), "--usd", str(usd))
+    assert (scene.schedule.current, validate_animation(usd)) == (cuts, [])
 
 
 @pytest.mark.slow
