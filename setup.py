@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""What pyproject.toml cannot say: the scenes and their shapes go into the wheel below the package, whose name is ours."""
+"""What pyproject.toml cannot say: the scenes and their shapes go into the wheel, below the package."""
 
 from setuptools import find_packages, setup
 

@@ -19,7 +19,7 @@ from newton_cagecut.usd import BodyFrame, SceneFrame
 from .base import Camera, Scene, box_cage, require
 
 WIDTH, FIRST, JOINT, JOINTS = 0.34, 0.2, 0.18, 4  # of the cage and its joints [m]
-RING_COUNT, RING_SIZE, RADIUS = 40, 32, 0.112  # of the sprout
+RING_COUNT, RING_SIZE, RADIUS = 30, 24, 0.112  # of the sprout
 FRAMES_A_JOINT = 24
 SWAY, TWIST = 0.55, 1.6  # of the tip [m/m^2] and [rad/m]
 

@@ -48,7 +48,7 @@ LOOPS = {
     "keyframed": Loop(first=6, last=132),
     "own_mesh": Loop(first=9, last=96),
     "texture": Loop(first=6, last=110, every=4),
-    "extrude": Loop(last=126),
+    "extrude": Loop(last=126, every=4, options=("--walks", "32")),
     "starfish": Loop(first=21, last=165),
     "dude": Loop(last=96),
     "key": Loop(last=165),
