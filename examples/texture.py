@@ -32,7 +32,7 @@ class Example(CutScene):
     name = "texture"
     frame_count = frames_of(CUTS) + 45
     skin_color, cap_color = (0.05, 0.25, 0.04), (0.80, 0.08, 0.06)
-    camera = Camera(eye=(0.5, -1.9, 1.1), target=(0.0, 0.0, 0.22))
+    camera = Camera(eye=(0.65, -2.45, 1.5), target=(0.1, 0.0, 0.12))
 
     def add_bodies(self, builder: newton.ModelBuilder) -> None:
         ball = newton.Mesh.create_sphere(1.0, num_latitudes=48, num_longitudes=96)

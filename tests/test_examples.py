@@ -62,7 +62,7 @@ def test_gingerbread_man_is_cut_down(monkeypatch, tmp_path):
     scene = run(monkeypatch, "gingerbread", *FAST, "--num-frames", "50", "--usd", str(usd))
     body = scene.solver.bodies[0]
     assert (scene.schedule.current, body.cage.piece_count, body.surface.mesh.component_count) == (4, 4, 4)
-    assert scene.frame - scene._parted_at >= 20
+    assert scene.frame - scene.parted_at >= 20
     assert validate_animation(usd) == []
 
 

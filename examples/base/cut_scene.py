@@ -34,6 +34,8 @@ class CutScene(Scene):
     paint_color: Color | None = None
     shape_color: Color = (0.16, 0.18, 0.21)
     has_ground = True
+    parted_at = 0
+    """Frame in which the last cut went through."""
 
     def build(self) -> None:
         builder = newton.ModelBuilder()
@@ -113,6 +115,8 @@ class CutScene(Scene):
         for schedule in self.schedules:
             number = schedule.current
             report = schedule.advance((self.state_0, self.state_1))
+            if report is not None and report.complete:
+                self.parted_at = self.frame
             if report is not None and self.timings is not None:
                 self.timings.add_cut_step(number, report)
         start = time.perf_counter()

@@ -13,7 +13,7 @@ from newton_cagecut.usd import BodyFrame, SceneFrame
 from .picture import Mesh, cage_edges, tube_mesh
 
 CAGE_RADIUS, CAGE_COLOR = 0.004, (0.03, 0.03, 0.04)  # of a cage's edges: as a share of its size, linear RGB
-CAP_PARTS = 6  # parts of the edges of a textured cap's triangles, which are large
+CAP_PARTS = 10  # parts of the edges of a textured cap's triangles, which are large
 
 
 def drawn_meshes(frame: SceneFrame, *, cages: bool = False) -> list[Mesh]:

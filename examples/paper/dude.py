@@ -27,7 +27,6 @@ class Example(CutScene):
     frame_count = frames_of(CUTS) + 45
     skin_color, cap_color = (0.10, 0.24, 0.50), (0.95, 0.72, 0.45)
     camera = Camera(eye=(1.1, -2.9, 1.1), target=(0.36, 0.0, 0.47))
-    _loose_since: int | None = None
 
     def add_bodies(self, builder: newton.ModelBuilder) -> None:
         self.add_asset(
@@ -45,17 +44,15 @@ class Example(CutScene):
         body = self.solver.body("dude")
         count = body.cage.vertex_count
         wind = np.where(body.cage.vertices[:, 2:] > 0.3, BREEZE, 0.0)
-        if body.cage.piece_count == 2:
-            self._loose_since = self.frame if self._loose_since is None else self._loose_since
-            if self.frame < self._loose_since + GUST_FRAMES:
-                wind[self._hat().vertices] = GUST
+        if body.cage.piece_count == 2 and self.frame < self.parted_at + GUST_FRAMES:
+            wind[self._hat().vertices] = GUST
         force = np.zeros((body.vertices.stop - body.vertices.start, 3), dtype=np.float32)
         force[:count] = self.model.particle_mass[body.vertices].numpy()[:count, None] * wind
         self.state_0.particle_f[body.vertices].assign(force)
 
     def test_final(self) -> None:
         super().test_final()
-        if self._loose_since is None or self.frame < self._loose_since + 35:
+        if not self.parted_at or self.frame < self.parted_at + 35:
             return
         points, hat = self.points(), self._hat()
         require(points[:, 2].max() > 0.65, "the dude still stands")

@@ -50,7 +50,7 @@ class Example(CutScene):
     def test_final(self) -> None:
         super().test_final()
         body, points = self.solver.body("key"), self.points()
-        if self.frame < self.frame_count / self.args.pace:
+        if self.frame < self.parted_at + 25:
             return
         for piece in body.pieces:
             lowest = points[piece.surface_points, 2].min()
