@@ -37,12 +37,12 @@ class Example(CutScene):
     def add_bodies(self, builder: newton.ModelBuilder) -> None:
         world = newton.ModelBuilder()
         cagecut.SolverCageCut.register_custom_attributes(world)
-        ball = newton.Mesh.create_sphere(RADIUS, num_latitudes=16, num_longitudes=24)
+        ball = newton.Mesh.create_sphere(RADIUS, num_latitudes=20, num_longitudes=28)
         cagecut.add_cage_body(
             world,
             box_cage(3 * (2.1 * RADIUS,)),
             ball,
-            material=cagecut.Material(young=3e4, damping=0.01),
+            material=cagecut.Material(young=1.5e4, density=50.0, damping=0.01),
             xform=wp.transform((0.0, 0.0, RADIUS + 0.02), wp.quat_identity()),
             quadrature=100,
             contact_radius=0.004,

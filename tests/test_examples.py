@@ -114,7 +114,7 @@ def test_interactive_scene_cuts_and_undoes(monkeypatch):
             self.lines += (text,)
 
     scene = run(monkeypatch, "interactive", *FAST, "--num-frames", "2")
-    scene.gizmo = wp.transform((0.0, 0.0, 9.0), wp.quat_identity())
+    scene.gizmo = wp.transform((5.0, 0.0, 0.4), wp.quat_identity())
     panel = Panel()
     panel.pressed = "Cut"
     scene.gui(panel)

@@ -37,7 +37,7 @@ class Example(CutScene):
         self.add_asset(
             builder,
             "sphere",
-            material=Material(young=3e4, poisson=0.4, density=1000.0, damping=0.01),
+            material=Material(young=3e4, poisson=0.4, density=200.0, damping=0.01),
             xform=wp.transform((0.0, 0.0, STAND_HEIGHT + 0.5), wp.quat_identity()),
             cuts=4,
             crossing=True,
