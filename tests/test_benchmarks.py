@@ -17,6 +17,7 @@ from benchmarks.error_page import gain, write_page
 from benchmarks.scenes import SCENES
 from newton_cagecut import HarmonicCoordinates
 from newton_cagecut.report.bench import spread
+from newton_cagecut.report.cuts.following import Followed, follow
 from newton_cagecut.report.paper.cutting import edits, step_count
 from newton_cagecut.report.paper.table1 import HEAD, measure_table, recompute_seconds
 
@@ -146,7 +147,7 @@ def test_error_of_the_reference_is_taken_off():
 def test_flagged_walks_hold_the_changed_ones():
     """No step changes more walks than it flagged; some were flagged in vain."""
     scene = SCENES["jelly"]
-    found = locality.follow(scene.cage, scene.points, scene.blades[0], 4, "jelly", device="cpu")
+    found = follow(scene.cage, scene.points, scene.blades[0], 4, device="cpu")
     assert len(found.flagged) == 34
     assert all(changed <= flagged for changed, flagged in zip(found.changed, found.flagged))
     assert found.in_vain > 0.0
@@ -161,7 +162,7 @@ def test_histogram_of_locality_counts_every_vertex():
 def test_figures_are_plotted(tmp_path):
     """Both figures go into one file."""
     pytest.importorskip("matplotlib")
-    flagged = locality.Flagged([0.2, 0.1], [0.1, 0.1], np.zeros(4, dtype=bool))
+    flagged = Followed([0.2, 0.1], [0.1, 0.1], np.zeros(4, dtype=bool))
     found = {(cut, kind): flagged for cut in locality.DIRECTIONS for kind in ("dop18", "aabb")}
     shares = {place: np.array([0.0, 0.02, 0.3]) for place in locality.PLACES}
     locality.plot(shares, found, tmp_path / "locality.png")
