@@ -190,6 +190,7 @@ def test_errors_for_time_make_a_page(tmp_path):
         return {"method": method, "amount": amount, "squared": errors, "seconds": {"first": seconds, "step": seconds}}
 
     rows = [row("affine", 64, 1.6e-3, 1.0), row("affine", 1024, 1e-4 + 1e-8, 16.0)]
+    rows += [row("harmonic", 64, 8e-4, 1.0), row("harmonic", 1024, 5e-5, 16.0)]
     rows += [row("fitted", 0, 1.1e-7, 2.0), row("fitted", 64, 1e-8, 4.0)]
     scene = {"faces": 6, "points": 700, "references": own, "rows": rows}
     value, bounded = gain(scene, "before", "weights", walks=0)
