@@ -32,15 +32,25 @@ def find_anchors(body: BodyArrays):
 
 
 @wp.kernel(enable_backward=False)
+def take_points(body: BodyArrays):
+    """Gradients and volumes of the points as they are, for strain that is not averaged."""
+    q, j = wp.tid()
+    if body.averaged[0] == 0:
+        body.gradients[q, j] = body.point_gradients[q, j]
+        if j == 0:
+            body.volumes[q] = body.point_volumes[q]
+
+
+@wp.kernel(enable_backward=False)
 def assemble_mass(body: BodyArrays):
     """Consistent mass matrix with the stabilising inertia; zero in the spare rows and columns."""
     i, j = wp.tid()
     total = wp.float64(0.0)
     if i < body.vertex_count[0] and j < body.vertex_count[0]:
         total = wp.float64(body.stabilizing_mass[i, j])
-        for q in range(body.volumes.shape[0]):
+        for q in range(body.point_volumes.shape[0]):
             product = wp.float64(body.weights[q, i]) * wp.float64(body.weights[q, j])
-            total += wp.float64(body.volumes[q]) * product
+            total += wp.float64(body.point_volumes[q]) * product
     body.mass[i, j] = float(body.material[0][3] * total)
 
 
@@ -52,8 +62,8 @@ def lump_mass(body: BodyArrays):
     if i >= body.vertex_count[0]:
         return
     total = wp.float64(0.0)
-    for q in range(body.volumes.shape[0]):
-        total += wp.float64(body.volumes[q])
+    for q in range(body.point_volumes.shape[0]):
+        total += wp.float64(body.point_volumes[q])
     least = LUMPED * body.material[0][3] * total / wp.float64(body.vertex_count[0])
     row = wp.float64(0.0)
     for j in range(body.vertex_count[0]):
@@ -76,9 +86,10 @@ def count_pieces(body: BodyArrays):
 
 def record_masses(body: BodyArrays) -> tuple[wp.Launch, ...]:
     """The launches that bring anchors, masses and the number of pieces up to date, in their order."""
-    capacity, points, device = body.rest.shape[0], body.volumes.shape[0], body.rest.device
+    capacity, points, device = body.rest.shape[0], body.point_volumes.shape[0], body.rest.device
     return (
         launch_later(find_anchors, points, [body], device),
+        launch_later(take_points, (points, capacity), [body], device),
         launch_later(assemble_mass, (capacity, capacity), [body], device),
         launch_later(lump_mass, capacity, [body], device),
         launch_later(count_pieces, 1, [body], device),

@@ -9,6 +9,7 @@ import numpy as np
 import warp as wp
 
 from .arrays import make_body_arrays
+from .averaging import softened_moduli, strain_rows
 from .backward_euler import BackwardEuler
 from .energy import Energy, EnergyMeter
 from .implicit_integrator import Motion
@@ -92,7 +93,8 @@ class ReducedSystem:
             piece=piece,
             plane=self.is_plane,
         )
-        self.rest, self.weights, self.gradients, self.volumes = body.rest, body.weights, body.gradients, body.volumes
+        self.rest, self.weights = body.rest, body.weights
+        self.gradients, self.volumes = body.point_gradients, body.point_volumes
         self.vertex_count, self.fixed, self.rotation, self.piece = (
             body.vertex_count,
             body.fixed,
@@ -137,7 +139,34 @@ class ReducedSystem:
             )
         self.material = material
         self.arrays.material.assign(np.array([[*material.lame, material.damping, material.density]]))
+        self._soften()
         self.refresh()
+
+    def average(self, vertices: np.ndarray) -> None:
+        """Average strain over clusters of points, against locking; call :meth:`refresh` afterwards.
+
+        To be called anew after each edit; see ``averaging``.
+
+        Args:
+            vertices: The cage's vertices in use in its rest frame, shape (n, 3), or (n, 2) of a plane body [m].
+        """
+        body, count = self.arrays, len(vertices)
+        inputs = [array.numpy()[:, :count] for array in (self.weights, self.gradients)]
+        rows = strain_rows(vertices, *inputs, self.volumes.numpy(), self.piece.numpy()[:count], body.volumes.shape[0])
+        gradients = np.zeros((*body.gradients.shape, 3), dtype=np.float32)
+        gradients[:, :count] = rows.gradients
+        body.gradients.assign(gradients)
+        body.volumes.assign(rows.volumes.astype(np.float32))
+        body.anchors[self.point_count :].assign(rows.anchors.astype(np.int32))
+        body.averaged.fill_(1)
+        self._soften()
+
+    def _soften(self) -> None:
+        """Set the constants of the material at the points."""
+        lame = self.material.lame
+        if self.arrays.averaged.numpy()[0]:
+            lame = softened_moduli(*lame, plane=self.is_plane)
+        self.arrays.softened.assign(np.array([lame]))
 
     def stabilize(self, vertices: np.ndarray, edges: np.ndarray) -> None:
         """Tie vertices that the quadrature hardly sees to their neighbours; call :meth:`refresh` afterwards.

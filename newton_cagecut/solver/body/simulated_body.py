@@ -289,6 +289,7 @@ class SimulatedBody:
         if self.system is not None:
             self.piece.assign(self._padded(self.cage.vertex_piece))
             self.system.stabilize(self.cage.vertices, self.cage.mesh.edges)
+            self.system.average(self.cage.vertices)
             self.system.refresh()
             wp.copy(self.model.particle_mass[self.vertices], self.system.vertex_mass)
 
