@@ -5,8 +5,8 @@
 
 Harmonic coordinates are stiffer than the body in three ways. In bending, what they make of the quadratic field of the
 vertices sags inside the cage and jags along it: gradients are corrected until they reproduce quadratic fields
-(``gradients.py``). Nearly incompressible bodies cannot keep their volume at every point: the volumetric part acts on the
-mean of F in clusters (``clusters.py``), after the mean-strain elements with energy sampling of Krysl 2015
+(``gradients.py``). Nearly incompressible bodies cannot keep their volume at every point: the volumetric part acts on
+the mean of F in clusters (``clusters.py``), after the mean-strain elements with energy sampling of Krysl 2015
 ("Mean-strain eight-node hexahedron with stabilization by energy sampling"): the energy is that of the means, and at the
 points a softer material of the same model acts on what is beyond the means (``moduli.py``). It is one potential, of
 which forces and stiffness are the derivatives, for every constitutive model.

@@ -5,8 +5,9 @@
 
 The vertices that move a point lie at some distance from it, the root of the mean square by their weights. The clusters'
 centres keep apart by twice the greatest such distance: so each spans the cage's thickness, however many vertices there
-are, since none lies inside. Fewer and larger clusters change little, smaller ones lock. Distances are along paths between neighbours that the same vertices move, so that
-no cluster spans two pieces, nor the two sides of a cut but around its tip.
+are, since none lies inside. Fewer and larger clusters change little, smaller ones lock. Distances are along paths
+between neighbours that the same vertices move, so that no cluster spans two pieces, nor the two sides of a cut but
+around its tip.
 """
 
 from __future__ import annotations

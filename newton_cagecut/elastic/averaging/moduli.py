@@ -6,13 +6,14 @@
 A cage's vertices lie on its surface: they bend a bar, but cannot make its sections contract on one side and swell on
 the other, nor warp. So a fibre must resist as it does in a body that is free to: with Young's modulus in a beam, and
 with the modulus of a plate, E / (1 - nu^2), where it cannot contract along one axis. The mean of both is taken. A shear
-must resist as in a bar that warps: the torsional stiffness of a square bar is 0.844 of what it is without warping, of
-one that the edges do warp it is all; the mean is taken. In the plane a fibre has the plate's modulus, and nothing warps.
+must resist as in a bar that warps: the torsional stiffness of a square bar is 0.844 of what it is without warping. The
+mean of that and of both bendings, which need no warping, is taken. In the plane a fibre has the plate's modulus, and
+nothing warps.
 """
 
 from __future__ import annotations
 
-_SHEAR_SHARE = 0.5 * (0.8436 + 1.0)
+_SHEAR_SHARE = (0.8436 + 2.0) / 3.0
 """Shear modulus at the points, in shear moduli of the material; of solid bodies."""
 
 
@@ -27,7 +28,7 @@ def softened_moduli(mu: float, lam: float, *, plane: bool = False) -> tuple[floa
     poisson = 0.5 * lam / (lam + mu)
     plate = 2.0 * mu / (1.0 - poisson)
     if plane:
-        return mu, min(plate - 2.0 * mu, lam)
+        return mu, lam if poisson <= 0.0 else min(plate - 2.0 * mu, lam)
     shear = _SHEAR_SHARE * mu
     greatest = lam + 2.0 / 3.0 * (mu - shear)
     if poisson <= 0.0:
