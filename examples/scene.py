@@ -21,6 +21,8 @@ from examples.timings import Timings
 from newton_cagecut import SolverCageCut
 from newton_cagecut.solver import CageBody
 
+_NO_DISPLAY = ("NoSuchDisplayException", "NoSuchConfigException", "NoSuchScreenModeException")
+
 
 class CutScene:
     """What the scenes have in common: a scene says what is in it, this does the rest.
@@ -155,7 +157,15 @@ class CutScene:
     @classmethod
     def main(cls) -> CutScene:
         """Run the scene with the options of the command line, and return it as it is at the end."""
-        viewer, args = newton.examples.init(cls.create_parser())
+        try:
+            viewer, args = newton.examples.init(cls.create_parser())
+        except Exception as error:
+            if type(error).__name__ not in _NO_DISPLAY:  # classes of pyglet, which other viewers do without
+                raise
+            raise SystemExit(
+                f"{cls.name}: a window needs a display, and there is none ({error}); --headless draws without one, "
+                "--viewer null shows nothing, and --usd and --picture write files"
+            ) from None
         scene = cls(viewer, args)
         try:
             newton.examples.run(scene, args)

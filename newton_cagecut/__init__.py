@@ -4,8 +4,8 @@
 """Cages with harmonic coordinates that can be cut while they move, as a solver for Newton.
 
 The rooms, from the bottom up: ``geometry``, ``section``, ``cage``, ``harmonic``, ``surface``, ``elastic``, ``usd``,
-``files``, ``wrap``, ``solver``, ``report``. The names here are the public ones. The method is "Fast Cutting of Cage
-Based Deformation with Walk on Spheres"; bit-identical updates and harmonic control variates go past it.
+``files``, ``wrap``, ``solver``, ``stage``, ``report``. The names here are the public ones. The method is "Fast Cutting
+of Cage Based Deformation with Walk on Spheres"; bit-identical updates and harmonic control variates go past it.
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ if TYPE_CHECKING:  # for type checkers; the table says the same to Python
     from .solver import PlanEntry as PlanEntry
     from .solver import SolverCageCut as SolverCageCut
     from .solver import add_cage_body as add_cage_body
+    from .stage import add_usd as add_usd
     from .surface import Surface as Surface
     from .wrap import wrap_cage as wrap_cage
 
@@ -57,6 +58,7 @@ _ROOMS = {
     "Surface": "surface",
     "UpdateStats": "harmonic",
     "add_cage_body": "solver",
+    "add_usd": "stage",
     "read_cage": "files",
     "read_mesh": "files",
     "wrap_cage": "wrap",

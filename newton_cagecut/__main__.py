@@ -14,6 +14,7 @@ _COMMANDS = {
     "validate": ("usd.validate_command", "check USD files at every sample"),
     "report": ("report.report_command", "measure error against run time, and write a page"),
     "plan": ("report.plan_command", "list what a scene needs, and what it leaves out"),
+    "run": ("report.run_command", "simulate and cut the bodies of a USD stage"),
     "stability": ("report.stability_command", "step extreme cases, and compare with exact answers"),
 }
 """Module and summary of each command. Only the module of the command that runs is imported."""

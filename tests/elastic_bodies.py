@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import warp as wp
 
-from newton_cagecut.elastic import Material, PointForces, ReducedSystem
+from newton_cagecut.elastic import Material, ReducedSystem, make_point_forces
 
 DT = 1.0 / 60.0
 SIZE = np.array([0.2, 0.3, 0.5])
@@ -135,12 +135,9 @@ class Spring:
 
     def __init__(self, body, stiffness, target):
         self.body, self.stiffness, self.target = body, stiffness, np.asarray(target)
-        self.points = points = PointForces()
-        points.weights = as_array(np.eye(1, body.x.shape[0]), float)
-        points.touched, points.count = as_array([0], int), as_array([1], int)
-        points.force, points.product = (as_array([STILL], wp.vec3) for _ in range(2))
-        points.stiffness = as_array([stiffness * np.eye(3)], wp.mat33)
-        points.damping, points.system = (as_array(np.zeros((1, 3, 3)), wp.mat33) for _ in range(2))
+        self.points = make_point_forces(as_array(np.eye(1, body.x.shape[0]), float), 0, 1)
+        self.points.count.fill_(1)
+        self.points.stiffness.assign([stiffness * np.eye(3)])
 
     def aim(self):
         """The points, with the force at the body's present position."""

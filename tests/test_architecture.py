@@ -25,7 +25,20 @@ KNOWN_ROOMS = {
     "files": ("geometry", "cage", "surface", "usd"),
     "wrap": ("geometry", "cage", "surface", "usd", "files"),
     "solver": ("geometry", "section", "cage", "harmonic", "surface", "elastic", "usd", "files", "wrap"),
-    "report": ("geometry", "section", "cage", "harmonic", "surface", "elastic", "usd", "files", "wrap", "solver"),
+    "stage": ("geometry", "section", "elastic", "usd", "solver"),
+    "report": (
+        "geometry",
+        "section",
+        "cage",
+        "harmonic",
+        "surface",
+        "elastic",
+        "usd",
+        "files",
+        "wrap",
+        "solver",
+        "stage",
+    ),
 }
 # What stands inside a room, from the bottom up: each line may know those above it and itself.
 LEVELS = {
@@ -45,12 +58,12 @@ LEVELS = {
     ),
 }
 FEATURES = {
-    "newton": ("solver", "report"),
-    "pxr": ("usd",),
+    "newton": ("solver", "stage", "report"),
+    "pxr": ("usd", "stage"),
     "pymeshlab": ("wrap",),
     "scipy": ("surface", "elastic", "wrap", "solver", "report"),
     "trimesh": ("files",),
-    "warp": ("harmonic", "elastic", "solver", "report"),
+    "warp": ("harmonic", "elastic", "solver", "stage", "report"),
 }
 LINE_LIMIT, FILE_LIMIT = 450, 17
 

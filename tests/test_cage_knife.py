@@ -147,7 +147,7 @@ def test_refusals():
         Blade([0, 0, 0], [1, 0, 0], [0, 1, 0], width=(0.3, 0.1))
     with pytest.raises(TypeError, match="width must be a length"):
         Blade([0, 0, 0], [1, 0, 0], [0, 1, 0], width="wide")
-    with pytest.raises(ValueError, match="start must be a length"):
+    with pytest.raises(ValueError, match="start must lie between"):
         Blade([0, 0, 0], [1, 0, 0], [0, 1, 0], start=np.nan)
     cut = Cut(box(), Blade([0.5, 0.5, 0.5], [0, 1, 0], [0, 0, -1], width=0.3))
     assert Blade([0, 0, 0], [1, 0, 0], [0, 1, 0]).window is None

@@ -67,6 +67,20 @@ def test_gingerbread_man_is_cut_down(monkeypatch, tmp_path):
     assert validate_animation(usd) == []
 
 
+def test_missing_display_is_explained(monkeypatch):
+    """A window without a display is one sentence that says what goes without."""
+
+    class NoSuchDisplayException(Exception):
+        pass
+
+    def fail(*_unused):
+        raise NoSuchDisplayException('Cannot connect to "None"')
+
+    monkeypatch.setattr("newton.examples.init", fail)
+    with pytest.raises(SystemExit, match="needs a display, and there is none .*--headless"):
+        run(monkeypatch, "starfish", "--viewer", "gl")
+
+
 def test_dispatcher_lists_the_scenes(monkeypatch, capsys):
     """Without a name, each scene is listed with one line."""
     run(monkeypatch)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import sys
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +14,8 @@ from pxr import Gf, Sdf, Usd, UsdGeom
 
 import mesh_files
 import newton_cagecut as cagecut
-from mesh_files import BOX, NORMALS, QUADS, UVS
+from mesh_files import BOX, NORMALS, QUADS, TRIANGLES, UVS
+from newton_cagecut import read_cage, read_mesh
 from newton_cagecut.usd import write_cage
 
 WRITERS = {
@@ -307,6 +309,58 @@ def test_missing_files_and_bad_cages(tmp_path):
     (tmp_path / "folder.obj").mkdir()
     with pytest.raises(ValueError, match=r"folder.obj is a folder, not a file"):
         cagecut.read_mesh(tmp_path / "folder.obj")
-    (tmp_path / "open.obj").write_text(TRIANGLE)
-    with pytest.raises(ValueError, match=r"open.obj is no valid cage: "):
+    (tmp_path / "open.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n")
+    with pytest.raises(ValueError, match=r"open.obj is no valid cage: the cage is open"):
         cagecut.read_cage(tmp_path / "open.obj")
+
+
+def ring(path: Path) -> None:
+    """A flat ring of triangles at z = 0.5, clockwise seen from +z."""
+    corners = [(0, 0), (3, 0), (3, 3), (0, 3), (1, 1), (2, 1), (2, 2), (1, 2)]
+    rows = [f"v {x} {y} 0.5" for x, y in corners]
+    for i in range(4):
+        a, b, c, d = i + 1, (i + 1) % 4 + 1, i + 5, (i + 1) % 4 + 5
+        rows += [f"f {a} {c} {b}", f"f {b} {c} {d}"]
+    path.write_text("\n".join(rows))
+
+
+def test_flat_meshes_are_plane_cages_of_their_border(tmp_path):
+    """A triangulated ring that faces down is a square with a hole; one that stands upright is told to be turned."""
+    ring(tmp_path / "ring.obj")
+    cage = read_cage(tmp_path / "ring.obj", scale=2.0)
+    assert (cage.dimension, cage.vertex_count, cage.face_count) == (2, 8, 8)
+    assert cage.volume == pytest.approx(4.0 * (9.0 - 1.0))
+    text = (tmp_path / "ring.obj").read_text()
+    upright = [f"v {r.split()[1]} 0.5 {r.split()[2]}" if r.startswith("v") else r for r in text.splitlines()]
+    (tmp_path / "upright.obj").write_text("\n".join(upright))
+    with pytest.raises(ValueError, match="is not flat.*turn it"):
+        read_cage(tmp_path / "upright.obj")
+
+
+def test_cage_and_mesh_in_one_file(tmp_path):
+    """Of two objects of which one is named a cage, each reader takes its own; a name takes any."""
+    small = 0.5 * BOX + 0.2
+    rows = [
+        "o body",
+        *(f"v {x} {y} {z}" for x, y, z in small),
+        *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in TRIANGLES),
+    ]
+    rows += ["o BodyCage", *(f"v {x} {y} {z}" for x, y, z in BOX)]
+    rows += ["f " + " ".join(str(v + 9) for v in face) for face in QUADS]
+    (tmp_path / "both.obj").write_text("\n".join(rows))
+    cage, mesh = read_cage(tmp_path / "both.obj"), read_mesh(tmp_path / "both.obj")
+    assert (cage.volume, cage.face_count) == (pytest.approx(6.0), 6)
+    assert (mesh.volume, mesh.point_count) == (pytest.approx(6.0 / 8.0), 8)
+    assert cage.contains(mesh.points).all()
+    assert read_mesh(tmp_path / "both.obj", name="BodyCage").volume == pytest.approx(6.0)
+
+
+def test_bent_quads_are_repaired_while_reading(tmp_path):
+    """Options go on to the cage."""
+    bent = BOX.copy()
+    bent[7] += 0.4
+    rows = [*(f"v {x} {y} {z}" for x, y, z in bent), *("f " + " ".join(str(v + 1) for v in f) for f in QUADS)]
+    (tmp_path / "bent.obj").write_text("\n".join(rows))
+    with pytest.raises(ValueError, match="repair=True"):
+        read_cage(tmp_path / "bent.obj")
+    assert read_cage(tmp_path / "bent.obj", repair=True).face_count == 9

@@ -8,11 +8,17 @@ import numpy as np
 import pytest
 
 from newton_cagecut.geometry import (
+    PolygonMesh,
+    as_callback,
+    as_flag,
     as_index,
+    as_indices,
+    as_instance,
     as_integers,
     as_loops,
     as_number,
     as_points,
+    as_sequence,
     as_vector,
     check_finite,
     dots,
@@ -24,6 +30,21 @@ from newton_cagecut.geometry import (
     ("call", "error", "text"),
     [
         (lambda: as_number("x", "the depth"), TypeError, "the depth must be a number, got 'x'"),
+        (lambda: as_number("3", "the depth"), TypeError, "the depth must be a number, got '3'"),
+        (lambda: as_number(True, "the depth"), TypeError, "the depth must be a number, got True"),
+        (lambda: as_vector(None, "the way", dimension=3), TypeError, "the way must be three numbers, got None"),
+        (lambda: as_vector(["1", "2"], "the way"), TypeError, "the way must be three numbers, or two in the plane"),
+        (lambda: as_indices([0, 5], "rows", of="point", limit=5), ValueError, "rows: 5 is no point; there are 5"),
+        (lambda: as_indices(None, "rows", of="point"), TypeError, "rows must be integers, got None"),
+        (lambda: as_instance(3, PolygonMesh, "the mesh"), TypeError, "the mesh must be a PolygonMesh, got int"),
+        (
+            lambda: as_sequence(3, int, "the counts"),
+            TypeError,
+            r"must be a sequence of int, got one int; pass the counts=",
+        ),
+        (lambda: as_sequence([3, "x"], int, "the counts"), TypeError, r"the counts\[1\] must be an int, got str"),
+        (lambda: as_callback(3, "progress"), TypeError, "progress must be a function or None, got 3"),
+        (lambda: as_flag(1, "closed"), TypeError, "closed must be True or False, got 1"),
         (lambda: as_number(np.nan, "the depth"), ValueError, "the depth must be a number, got nan"),
         (lambda: as_index(1.0, "the face"), TypeError, "the face must be an integer, got 1.0"),
         (lambda: as_vector("up", "the way", dimension=2), TypeError, "the way must be two numbers, got 'up'"),
@@ -58,7 +79,7 @@ def test_wrong_arguments_are_named(call, error, text):
 def test_arguments_are_copies():
     """Numbers come back as an array of their own in float64; loops come back flat."""
     points = np.zeros((2, 3))
-    assert as_number("inf", "the depth") == np.inf
+    assert as_number(np.inf, "the depth") == np.inf
     assert not np.shares_memory(as_points(points, "the points", rows="n", widths=(3, 2)), points)
     assert not np.shares_memory(as_vector(points[0], "the origin"), points)
     start, vertex = as_loops([(0, 1, 2), [2, 1]], "the cage")

@@ -52,7 +52,7 @@ def test_bad_points(cage, inside):
         bake(cage, inside)
     d = cage.dimension
     for shape in ((2, 5 - d), (d,), (2, d, 1)):
-        with pytest.raises(ValueError, match=rf"shape \(n, {d}\), not \({', '.join(map(str, shape))}"):
+        with pytest.raises(ValueError, match=rf"shape \(n, {d}\), got \({', '.join(map(str, shape))}"):
             bake(cage, np.zeros(shape))
 
 
@@ -283,7 +283,7 @@ def test_remove_points_refuses(cage, inside):
         ([0, 0], ValueError, "point 0 is given twice"),
         ([-1], ValueError, "-1 is no point"),
         ([[0]], ValueError, r"shape \(n,\)"),
-        ([0.0], TypeError, "whole numbers"),
+        ([0.0], TypeError, "must be integers"),
     ):
         with pytest.raises(error, match=text):
             coordinates.remove_points(np.array(indices))

@@ -135,7 +135,7 @@ def test_wrong_states_change_nothing():
     )
     assert smaller.particle_count != solver.model.particle_count
     before = everything(solver, states)
-    with pytest.raises(TypeError, match=r"states\[1\] must be a state"):
+    with pytest.raises(TypeError, match=r"states\[1\] must be a newton.State"):
         solver.advance_cut(cut, to=0.6, states=(states[0], None))
     with pytest.raises(ValueError, match=r"states\[0\].particle_q has the shape"):
         solver.advance_cut(cut, to=0.6, states=(foreign,))

@@ -13,19 +13,34 @@ from functools import cached_property
 
 import numpy as np
 
-from ..geometry import PolygonMesh, as_loops, as_points, triangulate_faces, units, winding_numbers
+from ..geometry import (
+    PolygonMesh,
+    as_flag,
+    as_length,
+    as_loops,
+    as_number,
+    as_points,
+    check_finite,
+    triangulate_faces,
+    units,
+    winding_numbers,
+)
 from .checks import topology
 from .edits import extrusion, refinement
 from .edits.edit import CageEdit
 from .edits.obstacle import insert_obstacle
+from .inflation import moved_out
 from .pieces import component_piece
+from .repair import repaired
 from .wall import Wall, face_walls
 
 
 class Cage:
     """A closed, consistently oriented manifold of planar polygons, or of segments in the plane; immutable."""
 
-    def __init__(self, vertices: np.ndarray, faces: Sequence[Sequence[int]], *, tolerance: float = 1e-6):
+    def __init__(
+        self, vertices: np.ndarray, faces: Sequence[Sequence[int]], *, tolerance: float = 1e-6, repair: bool = False
+    ):
         """Validate and build a cage.
 
         Args:
@@ -33,6 +48,8 @@ class Cage:
             faces: Loops of vertex ids, counterclockwise seen from outside. In the plane segments (a, b) with the inside
                 to their left: outer loops counterclockwise, those around holes clockwise.
             tolerance: Length below which things coincide, relative to the diagonal of the bounding box.
+            repair: Whether faces that are not planar are cut into triangles, outwards where that goes, and a cage that
+                is inside out is turned. Vertices stay what they are.
 
         Raises:
             TypeError: If the vertices are not numbers or the faces not sequences of integers.
@@ -40,11 +57,23 @@ class Cage:
         """
         positions = as_points(vertices, "vertices", rows="vertex_count", widths=(3, 2))
         face_start, face_vertex = as_loops(faces, "the cage")
-        if not (np.isfinite(tolerance) and 0.0 < tolerance < 0.1):
+        tolerance = as_number(tolerance, "tolerance", limits=(0.0, 0.1))
+        if not 0.0 < tolerance < 0.1:
             raise ValueError(f"tolerance must lie between 0 and 0.1, got {tolerance}")
         topology.check_loops(positions, face_start, face_vertex, simple=True)
-        self.tolerance = float(tolerance)
+        self.tolerance = tolerance
         self.diameter = float(np.linalg.norm(positions.max(axis=0) - positions.min(axis=0)))
+        if as_flag(repair, "repair"):
+            face_start, face_vertex = as_loops(
+                repaired(
+                    positions,
+                    face_start,
+                    face_vertex,
+                    tolerance=self.length_tolerance,
+                    build=lambda loops: Cage(positions, loops, tolerance=tolerance),
+                ),
+                "the cage",
+            )
         self.mesh = PolygonMesh(positions, face_start, face_vertex)
         topology.check_boundary(self.mesh, self.length_tolerance)
         normals = units(self.mesh.face_area_vector)
@@ -240,8 +269,13 @@ class Cage:
 
         Returns:
             Winding numbers, shape (point_count, component_count).
+
+        Raises:
+            TypeError: If the points are not numbers.
+            ValueError: If they have another shape or are not finite.
         """
-        points = np.asarray(points, dtype=np.float64).reshape(-1, self.dimension)
+        points = as_points(points, "points", rows="point_count", widths=(self.dimension,))
+        check_finite(points, "points")
         group = self.face_component[self.simplex_face]
         return winding_numbers(points, self.vertices, self.simplices, group, self.component_count)
 
@@ -253,6 +287,10 @@ class Cage:
 
         Returns:
             True for the points inside, shape (point_count,).
+
+        Raises:
+            TypeError: If the points are not numbers.
+            ValueError: If they have another shape or are not finite.
         """
         return self.winding_numbers(points).sum(axis=1) > 0.5
 
@@ -264,6 +302,10 @@ class Cage:
 
         Returns:
             Piece of each point, -1 outside the cage, shape (point_count,).
+
+        Raises:
+            TypeError: If the points are not numbers.
+            ValueError: If they have another shape or are not finite.
         """
         number = self.winding_numbers(points)
         volume = np.where((number > 0.5) & self.mesh.component_outward, self.component_volumes, np.inf)
@@ -318,6 +360,33 @@ class Cage:
         cage = Cage._assembled(self, mesh, self.walls, self.face_wall[parent], self.face_side[parent])
         cage.validate()
         return cage
+
+    def triangulated(self) -> Cage:
+        """The cage with all its faces cut into triangles, in their planes; the cage stays as it is.
+
+        Faces that are not planar are cut where a cage is made of them: ``Cage(vertices, faces, repair=True)``.
+
+        Raises:
+            ValueError: If the cage has been cut, or is a plane one.
+        """
+        refinement.refuse_cuts(self, "cut it into triangles")
+        return Cage(self.vertices, self.triangles, tolerance=self.tolerance)
+
+    def inflated(self, distance: float) -> Cage:
+        """The cage with its faces moved outward by a distance at least; the cage stays as it is.
+
+        Around corners of more than three planes, in the plane never, faces may bend; those are cut into triangles.
+
+        Args:
+            distance: The distance [m].
+
+        Raises:
+            TypeError: If the distance is not a number.
+            ValueError: If it is not positive, the cage has been cut, or faces would cross each other.
+        """
+        length = as_length(distance, "the distance")
+        refinement.refuse_cuts(self, "inflate it")
+        return Cage(moved_out(self, length), self.faces, tolerance=self.tolerance, repair=True)
 
     def insert(self, obstacle: Cage) -> CageEdit:
         """Take the room of an obstacle from the body; the cage stays as it is.

@@ -13,6 +13,10 @@ import warp as wp
 
 from .stiffness import Stiffness
 
+HELD = wp.constant(1)
+DRIVEN = wp.constant(2)
+"""Values of ``BodyArrays.fixed``."""
+
 CPU_WIDTH = 8
 """Points that lie side by side in a vector on a CPU; see ``solve/lanes.py``."""
 MODULI_COUNT = 45
@@ -53,7 +57,8 @@ class BodyArrays:
     vertex_count: wp.array[int]
     """Number of vertices in use, shape (1,)."""
     fixed: wp.array[int]
-    """Nonzero for vertices that a step does not move, one a vertex."""
+    """0 for free vertices, ``HELD`` for those that a step does not move, ``DRIVEN`` for those that it moves at their
+    given velocity, one a vertex."""
     rest: wp.array[wp.vec3]
     """Rest positions, one a vertex [m]."""
     rotation: wp.array[wp.mat33]
@@ -122,6 +127,8 @@ class StepArrays:
     """Stiffness times volume and time scale, one a point."""
     moduli: wp.array2d[float]
     """The same as symmetric 9x9 matrices, one a column; see ``solve/lanes.py``, also of those below."""
+    blocks: wp.array2d[wp.mat33]
+    """The same for the assembled matrix, one a point and pair of components; none where it is not assembled."""
     tensions: wp.array2d[float]
     """Stress, or its change with a direction, times volume and time scale, one a column."""
     strain: wp.array2d[float]

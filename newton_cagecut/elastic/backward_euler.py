@@ -25,6 +25,7 @@ class BackwardEuler(ImplicitIntegrator):
 
     def __init__(self, body: BodyArrays, model: str, *, limits: SolveLimits, record: StepRecord) -> None:
         super().__init__(body, model, limits=limits, record=record)
+        self._add_point_residual = self.solver.adding_residual(self.arrays.predicted, self._no_forces)
         self._find_rates = self._per_point(limit.find_rates, [self.arrays])
         self._find_limit = block_later(limit.find_limit, [body, self.arrays, record], self.device)
 
@@ -49,7 +50,7 @@ class BackwardEuler(ImplicitIntegrator):
         self._launch(step_kernels.find_residual, [forces, body, step, system])
         self._add_elastic_residual.launch()
         if points is not None:
-            self.solver.add_residual(points, step.predicted, self._no_forces)
+            self._add_point_residual(points)
         self._solve(points)
         self._launch(limit.find_velocities, [before.velocities, step, system])
         if self.is_plane:

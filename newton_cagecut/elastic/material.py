@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, fields
 
+from ..geometry import as_finite
 from .constitutive import CONSTITUTIVE_MODELS, ConstitutiveModel, register
 
 _LEAST_POISSON = -0.85
@@ -43,7 +43,7 @@ class Material:
     def __post_init__(self) -> None:
         for field in fields(self):
             if field.name != "model":
-                object.__setattr__(self, field.name, _as_finite(field.name, getattr(self, field.name)))
+                object.__setattr__(self, field.name, as_finite(getattr(self, field.name), f"Material {field.name}"))
         if self.young <= 0.0:
             raise ValueError(f"Material young is {self.young} Pa; it must be positive.")
         if not -1.0 < self.poisson < 0.5:
@@ -51,7 +51,7 @@ class Material:
                 f"Material poisson is {self.poisson}; it must lie in (-1, 0.5). Use 0.49 for a nearly "
                 "incompressible material."
             )
-        if self.model == "neo_hookean" and self.poisson < _LEAST_POISSON:
+        if isinstance(self.model, str) and self.model == "neo_hookean" and self.poisson < _LEAST_POISSON:
             raise ValueError(
                 f"Material poisson is {self.poisson}; with the model 'neo_hookean' it must be at least "
                 f"{_LEAST_POISSON}, below which a squeezed body can stay squeezed. Use 'corotational'."
@@ -74,14 +74,3 @@ class Material:
         """Lame's constants (mu, lambda) [Pa]; mu is the shear modulus."""
         mu = self.young / (2.0 * (1.0 + self.poisson))
         return mu, self.young * self.poisson / ((1.0 + self.poisson) * (1.0 - 2.0 * self.poisson))
-
-
-def _as_finite(name: str, value: float) -> float:
-    """One constant as a finite float."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError) as error:
-        raise TypeError(f"Material {name} is {value!r}; it must be a number.") from error
-    if not math.isfinite(number):
-        raise ValueError(f"Material {name} is {number}; it must be finite.")
-    return number

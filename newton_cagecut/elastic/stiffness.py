@@ -41,6 +41,10 @@ class Stiffness:
 @wp.func
 def project_block(block: wp.mat33d) -> wp.mat33d:
     """Nearest positive semidefinite matrix; the matrix itself where it is one."""
+    zero = wp.float64(0.0)
+    minor = block[0, 0] * block[1, 1] - block[0, 1] * block[1, 0]
+    if block[0, 0] > zero and minor > zero and wp.determinant(block) > zero:
+        return block
     vectors, values = wp.eig3(block)
     result = block
     for k in range(3):

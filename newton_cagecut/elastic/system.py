@@ -46,7 +46,8 @@ class ReducedSystem:
             areas times its thickness.
         material: The material.
         vertex_count: Number of vertices in use, shape (1,) int.
-        fixed: Nonzero for vertices that a step does not move, shape (vertex_capacity,) int; none if not given.
+        fixed: 0 for free vertices, ``HELD`` for those that a step does not move, ``DRIVEN`` for those that it moves at
+            their given velocity, shape (vertex_capacity,) int; all free if not given.
         rotation: Rotation from the gradients' frame to that of the rest positions, shape (1,) mat33; identity if not
             given.
         piece: The piece that a vertex belongs to, counted from 0, shape (vertex_capacity,) int; all one if not given.
@@ -104,7 +105,7 @@ class ReducedSystem:
         self.mass, self.vertex_mass = body.mass, body.vertex_mass
         self.stabilizing_stiffness, self.stabilizing_mass = body.stabilizing_stiffness, body.stabilizing_mass
         self.record = make_step_record(self.device, None, None)
-        options = {"limits": SolveLimits() if limits is None else limits, "record": self.record}
+        options = {"limits": (limits or SolveLimits()).measured(material.poisson), "record": self.record}
         if integrator == "paper":
             self._integrator = BackwardEuler(body, material.model, **options)
         else:

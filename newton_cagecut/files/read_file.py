@@ -6,15 +6,15 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import replace
-from os import PathLike, fspath
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
 
 from ..cage import Cage
-from ..geometry import as_number, polygon_triangles
+from ..geometry import as_flag, as_number, as_path, polygon_triangles, shown
 from ..surface import Surface
-from ..usd import check_mesh, read_meshes, turn_up
+from ..usd import border_of, check_mesh, read_meshes, turn_up
 from ..usd import read_cage as read_usd_cage
 from .file_mesh import FileMesh, joined, split_at_seams, used_points, welded
 from .obj_file import read_obj
@@ -39,10 +39,11 @@ def read_mesh(
 ) -> Surface:
     """Read a mesh file as a surface to embed; polygons are cut into triangles.
 
-    USD, OBJ, OFF, PLY, STL and glTF are read, all meshes of a file as one unless one is named; STL and glTF need the
-    extra: ``pip install 'newton_cagecut[files]'``. Points keep the order of the file; texture coordinates and normals
-    are kept. Where those differ between the corners of a point, it gets copies behind all points. Triangles with a
-    point twice are left out.
+    USD, OBJ, OFF, PLY, STL and glTF are read, all meshes of a file as one unless one is named; those that have "cage"
+    in their name, where others have not, are left out: :func:`read_cage` reads them. STL and glTF need the extra:
+    ``pip install 'newton_cagecut[files]'``. Points keep the order of the file; texture coordinates and normals are
+    kept. Where those differ between the corners of a point, it gets copies behind all points. Triangles with a point
+    twice are left out.
 
     Args:
         path: The file; its ending tells the format.
@@ -62,8 +63,9 @@ def read_mesh(
         TypeError: An argument is of a wrong type.
         ValueError: An argument is wrong, the file cannot be read, or its mesh is none.
     """
-    path, meshes = _read(path, scale, up_axis, name)
-    mesh = joined(meshes)
+    weld, (path, meshes) = as_flag(weld, "weld"), _read(path, scale, up_axis, name)
+    cages = [] if name is not None else _cages_of(meshes)
+    mesh = joined([used_points(mesh) for mesh in meshes if mesh not in cages] if cages else meshes)
     if weld or path.suffix.lower() == ".stl":
         mesh = welded(mesh)
     triangles = polygon_triangles(mesh.points, mesh.counts, mesh.indices)
@@ -82,14 +84,15 @@ def read_cage(
     """Read a mesh file as a cage; its polygons become the cage's faces.
 
     Formats, extra and order are those of :func:`read_mesh`. Points at one place are joined, and those without faces
-    left out. USD's curves may be a plane cage, as in :func:`newton_cagecut.usd.read_cage`.
+    left out. A flat mesh that is open is the plane cage of its border. USD's curves may be a plane cage, as in
+    :func:`newton_cagecut.usd.read_cage`.
 
     Args:
         path: The file; its ending tells the format.
         scale: As in :func:`read_mesh`.
         up_axis: As in :func:`read_mesh`.
-        name: As in :func:`read_mesh`; may be left out where the file has one mesh.
-        options: Keyword arguments of :class:`~newton_cagecut.cage.Cage`.
+        name: As in :func:`read_mesh`; may be left out where the file has one mesh, or one with "cage" in its name.
+        options: Keyword arguments of :class:`~newton_cagecut.cage.Cage`, such as ``repair=True``.
 
     Returns:
         The validated cage [m].
@@ -104,12 +107,14 @@ def read_cage(
     if not meshes:  # of USD: curves, or an error that says what there is
         cage = read_usd_cage(path, up_axis=up_axis, **options)
         return cage if scale == 1.0 else Cage(cage.vertices * scale, cage.faces, **options)
+    meshes = _cages_of(meshes) or meshes
     names = list(dict.fromkeys(mesh.name for mesh in meshes))
     if len(names) > 1:
         raise ValueError(f"{path} has {len(names)} meshes; choose the cage by its name (name=): {', '.join(names)}")
     mesh = welded(used_points(joined(meshes)))
     try:
-        return Cage(mesh.points, mesh.loops, **options)
+        border = border_of("it", mesh.points, mesh.counts, mesh.indices)
+        return Cage(*(border or (mesh.points, mesh.loops)), **options)
     except ValueError as error:
         raise ValueError(f"{path} is no valid cage: {error}") from None
 
@@ -118,9 +123,9 @@ def _read(
     path: str | PathLike, scale: float, up_axis: str | None, name: str | None, *, empty: bool = False
 ) -> tuple[Path, list[FileMesh]]:
     """Return the path and the checked meshes of a file in metres; none only where that may be and the file is USD."""
-    path, scale = Path(fspath(path)), _checked_scale(scale)
-    if up_axis not in (None, "Y", "Z"):
-        raise ValueError(f'up_axis must be "Y", "Z" or None, got {up_axis!r}')
+    path, scale = Path(as_path(path)), _checked_scale(scale)
+    if not (up_axis is None or (isinstance(up_axis, str) and up_axis in ("Y", "Z"))):
+        raise ValueError(f'up_axis must be "Y", "Z" or None, got {shown(up_axis)}')
     if name is not None and not isinstance(name, str):
         raise TypeError(f"name must be the name of a mesh, got {name!r}")
     suffix = path.suffix.lower()
@@ -142,6 +147,12 @@ def _read(
     for mesh in meshes:
         check_mesh(f"mesh {mesh.name!r} of {path}", mesh.points, mesh.counts, mesh.indices)
     return path, _in_metres(meshes, scale, own_axis, up_axis)
+
+
+def _cages_of(meshes: list[FileMesh]) -> list[FileMesh]:
+    """Return the meshes that are a cage by their name, where others are not."""
+    cages = [mesh for mesh in meshes if "cage" in mesh.name.lower()]
+    return cages if len(cages) < len(meshes) else []
 
 
 def _in_metres(meshes: list[FileMesh], scale: float, own_axis: str | None, up_axis: str | None) -> list[FileMesh]:

@@ -6,7 +6,30 @@ Meshes, triangulation, winding numbers, distances, overlaps, vectors, and the ch
 makes.
 """
 
-from .arguments import as_index, as_integers, as_length, as_loops, as_number, as_points, as_vector, check_finite
+from .arguments import (
+    as_callback,
+    as_choice,
+    as_finite,
+    as_flag,
+    as_index,
+    as_instance,
+    as_length,
+    as_number,
+    as_path,
+    as_sequence,
+    is_number,
+    shown,
+)
+from .array_arguments import (
+    as_floats,
+    as_indices,
+    as_integers,
+    as_loops,
+    as_numbers,
+    as_points,
+    as_vector,
+    check_finite,
+)
 from .distances import (
     edge_distances,
     nearest_on_edges,
@@ -28,12 +51,22 @@ from .winding import winding_numbers
 
 __all__ = [
     "PolygonMesh",
+    "as_callback",
+    "as_choice",
+    "as_finite",
+    "as_flag",
+    "as_floats",
     "as_index",
+    "as_indices",
+    "as_instance",
     "as_integers",
     "as_length",
     "as_loops",
     "as_number",
+    "as_numbers",
+    "as_path",
     "as_points",
+    "as_sequence",
     "as_vector",
     "bridge_holes",
     "check_finite",
@@ -42,6 +75,7 @@ __all__ = [
     "dots",
     "edge_distances",
     "edge_pierces",
+    "is_number",
     "lifted",
     "monomials",
     "near_pairs",
@@ -51,6 +85,7 @@ __all__ = [
     "point_touches",
     "polygon_triangles",
     "segments_meet",
+    "shown",
     "signed_area",
     "simplex_distances",
     "triangle_distances",

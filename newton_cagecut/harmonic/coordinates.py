@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import warp as wp
 
 from ..cage import Cage, CageEdit
+from ..geometry import as_callback, as_instance, as_path
 from .cache.domain import Domain, domain_of
 from .cache.domain_state import DomainState
 from .cache.further_points import weights_of
@@ -21,13 +23,14 @@ from .cache.snapshot import CoordinatesSnapshot
 from .cache.storage import load_cache, save_cache
 from .cache.walk_cache import WalkCache
 from .journal import Journal
-from .options import WalkOptions
+from .options import WalkOptions, as_device
 from .placing import placed
 from .point_change import PointChange
 from .point_checks import (
     checked_indices,
     checked_keys,
     checked_points,
+    checked_room,
     require_uncovered,
     require_vertex_room,
 )
@@ -94,21 +97,15 @@ class HarmonicCoordinates:
         vertex_capacity: int | None = None,
         progress: Callable[[float], None] | None = None,
     ) -> None:
-        options = WalkOptions(walks, seed, correction, bounds, epsilon, max_steps, degree)
         self.domain = domain_of(cage, quads=quads, distance=distance, device=device)
+        options = WalkOptions(walks, seed, correction, bounds, epsilon, max_steps, degree)
         self._state = state = self.domain.now
         points = checked_points(points, state.cage.dimension)
         count = len(points)
+        room = checked_room(point_capacity, vertex_capacity, gradients, cuttable, state.cage, count, walks)
+        as_callback(progress, "progress")
         placement = placed(state, PointChange(np.arange(count), points, point_keys), capacity=count)
-        require_vertex_room(state.cage.vertex_count, vertex_capacity)
-        self._cache = WalkCache(
-            state,
-            options,
-            point_capacity=max(point_capacity or 0, count),
-            vertex_capacity=vertex_capacity,
-            gradient_mask=np.broadcast_to(np.asarray(gradients, dtype=bool), count),
-            cuttable=cuttable,
-        )
+        self._cache = WalkCache(state, options, **room)
         self._cache.place(placement, Journal())
         self._cache.stages(state, self._new_stats()).run_all(progress=progress)
 
@@ -211,6 +208,9 @@ class HarmonicCoordinates:
                 then, nor has it after any other failure.
         """
         cache = self._cache_of("update")
+        as_instance(edit, CageEdit, "edit", hint="cut.advance(to=depth) returns one")
+        if points is not None:
+            as_instance(points, PointChange, "points", hint="or use set_points after the update")
         if edit.before is not self.cage:
             raise ValueError(
                 "update: the edit starts from another cage than the coordinates hold; pass every edit, in order"
@@ -252,12 +252,22 @@ class HarmonicCoordinates:
             run_again(cache, state, stats, journal)
         return stats
 
-    def snapshot(self) -> CoordinatesSnapshot:
+    def snapshot(self, *, of: HarmonicCoordinates | None = None) -> CoordinatesSnapshot:
         """Copy all that edits change, for :meth:`restore`; as many bytes as the cache and the weights.
 
+        Args:
+            of: Other coordinates, made as these were, whose walks and weights are to be restored here.
+
         Raises:
-            ValueError: There is no walk cache.
+            ValueError: There is no walk cache, or the other coordinates have other capacities or options.
         """
+        if of is not None:
+            as_instance(of, HarmonicCoordinates, "of")
+            mine, other = (one._cache_of("snapshot") for one in (self, of))
+            sizes = [(cache.point_capacity, cache.vertex_capacity) for cache in (mine, other)]
+            if sizes[0] != sizes[1] or of.walks != self.walks:
+                raise ValueError("snapshot: the other coordinates have other capacities, or more or fewer walks")
+            return replace(of.snapshot(), owner=mine)
         return CoordinatesSnapshot.of(self._cache_of("snapshot"), self._state, self.domain)
 
     def restore(self, snapshot: CoordinatesSnapshot, *, journal: Journal | None = None) -> None:
@@ -270,7 +280,8 @@ class HarmonicCoordinates:
         Raises:
             ValueError: The snapshot is of other coordinates. Nothing has changed then.
         """
-        if snapshot.owner is not self._cache:
+        hint = "snapshot() of the coordinates returns one"
+        if as_instance(snapshot, CoordinatesSnapshot, "snapshot", hint=hint).owner is not self._cache:
             raise ValueError("restore: the snapshot is of other coordinates; restore those, or take one of these")
         with Journal.within(journal) as journal:
             journal.keep_attributes(self, "_state")
@@ -292,7 +303,7 @@ class HarmonicCoordinates:
             raise ValueError(
                 "save: the shared domain holds a later cage than these coordinates; recompute() them first"
             )
-        save_cache(cache, self.domain, path)
+        save_cache(cache, self.domain, as_path(path))
 
     @classmethod
     def load(
@@ -320,8 +331,8 @@ class HarmonicCoordinates:
                 options, which the text names; or its walks do not repeat themselves on this device.
         """
         coordinates = cls.__new__(cls)
-        points = checked_points(points, cage.dimension)
-        cache, domain = load_cache(path, cage, points, device=wp.get_device(device), options=options)
+        path, points = as_path(path), checked_points(points, as_instance(cage, Cage, "cage").dimension)
+        cache, domain = load_cache(path, cage, points, device=as_device(device), options=options)
         coordinates._cache, coordinates.domain, coordinates._state = cache, domain, domain.now
         return coordinates
 

@@ -9,6 +9,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 import numpy as np
+import warp as wp
+
+from ..geometry import as_choice, as_instance, is_number, shown
 
 BOUNDS = ("dop18", "dop26", "aabb", "sphere")
 CORRECTIONS = ("harmonic", "affine", "none", "fitted")
@@ -33,8 +36,8 @@ class WalkOptions:
     degree: int = 3
 
     def __post_init__(self) -> None:
-        require_choice("correction", self.correction, CORRECTIONS)
-        require_choice("bounds", self.bounds, BOUNDS)
+        as_choice(self.correction, CORRECTIONS, "correction")
+        as_choice(self.bounds, BOUNDS, "bounds")
         for name, low, high in (
             ("walks", 0 if self.correction == "fitted" else 1, 1 << 24),
             ("seed", 0, (1 << 32) - 1),
@@ -42,25 +45,30 @@ class WalkOptions:
             ("degree", 1, 3),
         ):
             value = getattr(self, name)
-            if not isinstance(value, (int, np.integer)) or not low <= value <= high:
-                raise ValueError(f"{name} must be a whole number from {low} to {high}, not {value!r}")
-        if not isinstance(self.epsilon, (int, float, np.number)) or not 1.0e-6 <= self.epsilon <= 0.1:
-            raise ValueError(f"epsilon must lie between 1e-6 and 0.1 (relative to the cage), not {self.epsilon!r}")
+            whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+            if not whole or not low <= value <= high:
+                raise ValueError(f"{name} must be a whole number from {low} to {high}, not {shown(value)}")
+        if not is_number(self.epsilon) or not 1.0e-6 <= float(self.epsilon) <= 0.1:
+            raise ValueError(f"epsilon must lie between 1e-6 and 0.1 (relative to the cage), not {shown(self.epsilon)}")
 
 
-def require_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
-    """Refuse a value that is none of the choices.
+def as_device(device: wp.context.Devicelike) -> wp.Device:
+    """The device that was named; Warp's current one for None.
 
     Args:
-        name: Name of the option.
-        value: Its value.
-        choices: The values that there are.
+        device: What was passed.
 
     Raises:
-        ValueError: The value is another one.
+        TypeError: It names none.
+        ValueError: There is no such device.
     """
-    if value not in choices:
-        raise ValueError(f"{name} must be one of {', '.join(choices)}, not {value!r}")
+    if device is not None:
+        as_instance(device, (str, wp.Device), "device", hint='"cpu" or "cuda:0" names one')
+    try:
+        return wp.get_device(device)
+    except (ValueError, RuntimeError):
+        there = ", ".join(one.alias for one in wp.get_devices())
+        raise ValueError(f"device {device!r} is not there; Warp has {there}") from None
 
 
 def check_options(options: Mapping[str, object], owner: str) -> None:
@@ -81,5 +89,5 @@ def check_options(options: Mapping[str, object], owner: str) -> None:
         raise TypeError(f"{owner} has no option {', '.join(unknown)}; options of the weights are {', '.join(known)}")
     for name, values in choices.items():
         if options.get(name) is not None:
-            require_choice(name, options[name], values)
+            as_choice(options[name], values, name)
     WalkOptions(**{name: value for name, value in options.items() if name not in choices})

@@ -8,8 +8,14 @@ from __future__ import annotations
 import numpy as np
 
 from ..cage import Cage, CageEdit, boundary_distances, check_inside
+from ..geometry import as_flag, as_index, as_indices, as_integers, as_points, check_finite, shown
 from .point_change import PointChange
 from .walks.query_points import INSIDE
+
+MOST_WALKS = 1 << 30
+"""Walks that a set of coordinates can have: offsets into their arrays are 32-bit integers."""
+MOST_VERTICES = 1 << 20
+"""Cage vertices that there can be room for."""
 
 
 def checked_change(change: PointChange, cage: Cage, *, count: int, capacity: int) -> tuple[PointChange, np.ndarray]:
@@ -43,14 +49,11 @@ def checked_points(points: np.ndarray, dimension: int) -> np.ndarray:
     """Points as float64, shape (n, dimension).
 
     Raises:
+        TypeError: They are not numbers.
         ValueError: They have another shape or are not finite.
     """
-    points = np.asarray(points, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != dimension:
-        raise ValueError(f"points must have the shape (n, {dimension}), not {points.shape}")
-    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
-    if len(bad):
-        raise ValueError(f"point {bad[0]} is not finite: {points[bad[0]]}")
+    points = as_points(points, "points", rows="n", widths=(dimension,))
+    check_finite(points, "points", row="point")
     return points
 
 
@@ -64,13 +67,12 @@ def checked_keys(keys: np.ndarray | None, count: int, wall_count: int, *, lowest
         lowest: INSIDE, or 0 where all points must lie on walls.
 
     Raises:
+        TypeError: They are not whole numbers.
         ValueError: There are fewer or more of them than points, or one is of no wall.
     """
-    if keys is None:
+    if keys is None and lowest == INSIDE:
         return np.full(count, INSIDE, np.int32)
-    keys = np.asarray(keys)
-    if keys.shape != (count,):
-        raise ValueError(f"point_keys must have the shape ({count},), one key a point, not {keys.shape}")
+    keys = as_integers(keys, "point_keys", shape=(count,)) if count or np.size(keys) else np.zeros(0, np.int32)
     highest = 2 * wall_count - 1
     bad = np.flatnonzero((keys < lowest) | (keys > highest))
     if len(bad):
@@ -92,18 +94,108 @@ def checked_indices(indices: np.ndarray, count: int | None = None) -> np.ndarray
         TypeError: They are not whole numbers.
         ValueError: They have another shape, one is negative, or one is there twice.
     """
-    indices = np.asarray(indices)
-    if indices.size and indices.dtype.kind not in "iu":
-        raise TypeError(f"indices must be whole numbers, not {indices.dtype}")
-    if indices.ndim != 1 or (count is not None and len(indices) != count):
-        shape = "n" if count is None else count
-        raise ValueError(f"indices must have the shape ({shape},), one index a point, not {indices.shape}")
+    indices = as_indices(indices, "indices", of="point")
+    if count is not None and len(indices) != count:
+        raise ValueError(f"indices must have shape ({count},), one index a point, got {indices.shape}")
     unique, counts = np.unique(indices, return_counts=True)
     if (counts > 1).any():
         raise ValueError(f"indices: point {unique[counts > 1][0]} is given twice")
-    if len(unique) and unique[0] < 0:
-        raise ValueError(f"indices: {unique[0]} is no point; they count from 0")
-    return indices.astype(np.int64)
+    return indices
+
+
+def checked_room(
+    point_capacity: int | None,
+    vertex_capacity: int | None,
+    gradients: bool | np.ndarray,
+    cuttable: bool,
+    cage: Cage,
+    count: int,
+    walks: int,
+) -> dict[str, object]:
+    """What a walk cache is made with, by name.
+
+    Args:
+        point_capacity: As passed to the coordinates.
+        vertex_capacity: Likewise.
+        gradients: Likewise.
+        cuttable: Likewise.
+        cage: The cage.
+        count: Number of points.
+        walks: Walks a point.
+    """
+    return {
+        "point_capacity": checked_point_capacity(point_capacity, count, walks),
+        "vertex_capacity": checked_vertex_capacity(vertex_capacity, cage),
+        "gradient_mask": checked_gradients(gradients, count),
+        "cuttable": as_flag(cuttable, "cuttable"),
+    }
+
+
+def checked_point_capacity(capacity: int | None, count: int, walks: int) -> int:
+    """Points to reserve room for; as many as there are for None.
+
+    Args:
+        capacity: What was passed.
+        count: Points that there are.
+        walks: Walks of each.
+
+    Raises:
+        TypeError: It is not a whole number.
+        ValueError: It is less than there are, or their walks are more than the arrays of walks can be long.
+    """
+    if capacity is not None:
+        capacity = as_index(capacity, "point_capacity, the number of points to reserve room for,")
+        if capacity < count:
+            raise ValueError(f"point_capacity={capacity} is less than the {count} points that there are; raise it")
+    capacity = count if capacity is None else capacity
+    if capacity * max(walks, 1) > MOST_WALKS:
+        raise ValueError(
+            f"{capacity} points (point_capacity) of {walks} walks are more than {MOST_WALKS} walks; take fewer walks, "
+            "or several sets of coordinates that share a domain"
+        )
+    return capacity
+
+
+def checked_vertex_capacity(capacity: int | None, cage: Cage) -> int | None:
+    """Cage vertices to reserve room for; None where it grows.
+
+    Args:
+        capacity: What was passed.
+        cage: The cage.
+
+    Raises:
+        TypeError: It is not a whole number.
+        ValueError: The cage does not fit, or there is too much of it.
+    """
+    if capacity is None:
+        return None
+    capacity = as_index(capacity, "vertex_capacity, the number of vertices to reserve room for,")
+    require_vertex_room(cage.vertex_count, capacity)
+    if capacity > MOST_VERTICES:
+        raise ValueError(f"vertex_capacity={capacity} is more than {MOST_VERTICES}; a row of weights is as long as it")
+    return capacity
+
+
+def checked_gradients(gradients: bool | np.ndarray, count: int) -> np.ndarray:
+    """Which points have gradients, shape (count,), bool.
+
+    Args:
+        gradients: What was passed: yes or no for all, or a mask.
+        count: Number of points.
+
+    Raises:
+        TypeError: It is neither.
+        ValueError: The mask has another length.
+    """
+    try:
+        mask = np.asarray(gradients)
+    except ValueError:
+        mask = np.zeros(0)
+    if mask.dtype != bool:
+        raise TypeError(f"gradients must be True, False or a mask over all {count} points, got {shown(gradients)}")
+    if mask.shape not in ((), (count,)):
+        raise ValueError(f"the mask gradients must have shape ({count},), got {mask.shape}")
+    return np.broadcast_to(mask, count)
 
 
 def require_vertex_room(vertices: int, vertex_capacity: int | None) -> None:

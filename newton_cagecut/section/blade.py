@@ -12,9 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry import as_vector, dots, lifted
+from ..geometry import as_number, as_vector, dots, is_number, lifted, shown
 
 _LEAST_SINE = 1e-3
+_STARTS = (-np.inf, np.finfo(float).max)
 
 
 class Blade:
@@ -56,9 +57,7 @@ class Blade:
         self.direction = _as_unit(direction, "direction", self.dimension)
         self.normal = _normal(self.edge, self.direction)
         self.heel, self.tip = _as_width(width)
-        self.start = -np.inf if start is None else float(start)
-        if np.isnan(self.start) or self.start == np.inf:
-            raise ValueError(f"the blade's start must be a length, got {start!r}")
+        self.start = -np.inf if start is None else as_number(start, "the blade's start", limits=_STARTS)
         for vector in (self.origin, self.edge, self.direction, self.normal):
             vector.setflags(write=False)
 
@@ -200,10 +199,10 @@ def _only_direction(edge: np.ndarray | None, direction: np.ndarray | None, width
 def _as_width(width: float | tuple[float, float] | None) -> tuple[float, float]:
     if width is None:
         return -np.inf, np.inf
-    try:
-        heel, tip = (float(end) for end in (width if np.ndim(width) else (-0.5 * width, 0.5 * width)))
-    except (TypeError, ValueError):
-        raise TypeError(f"the blade's width must be a length or (heel, tip), got {width!r}") from None
+    ends = (-0.5 * width, 0.5 * width) if is_number(width) else width
+    if not (isinstance(ends, tuple | list | np.ndarray) and len(ends) == 2 and all(is_number(end) for end in ends)):
+        raise TypeError(f"the blade's width must be a length or (heel, tip), got {shown(width)}")
+    heel, tip = (as_number(end, "the blade's width") for end in ends)
     if not heel < tip:
         raise ValueError(f"the blade's heel must lie before its tip, got ({heel:g}, {tip:g})")
     return heel, tip

@@ -7,7 +7,7 @@ import newton
 
 from .body.body_pieces import BodyPiece
 from .body.cage_body import CageBody
-from .body.definition import Capacity
+from .body.capacity import Capacity
 from .builder import add_cage_body
 from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot
@@ -15,6 +15,7 @@ from .cut.cut_report import CutReport
 from .newton_version import warn_if_untested
 from .plan import PlanEntry
 from .solver import SolverCageCut
+from .viewing import log_recorded
 
 __all__ = [
     "BodyCut",
@@ -26,6 +27,7 @@ __all__ = [
     "PlanEntry",
     "SolverCageCut",
     "add_cage_body",
+    "log_recorded",
 ]
 
 warn_if_untested(newton.__version__)

@@ -13,10 +13,10 @@ import warp as wp
 
 from ..cage import Cage
 from ..elastic import Material
-from ..geometry import as_index, as_length
+from ..geometry import as_index, as_instance, as_length, as_numbers, shown
 from ..harmonic import check_options
 from ..surface import Surface
-from .body.definition import Capacity
+from .body.capacity import MOST, Capacity
 
 
 def as_surface(
@@ -59,9 +59,7 @@ def as_material(material: Material | None) -> Material:
     """
     if material is None:
         return Material()
-    if not isinstance(material, Material):
-        raise TypeError(f"material must be a Material, such as Material(young=1e5), got {material!r}")
-    return material
+    return as_instance(material, Material, "material", hint="such as Material(young=1e5)")
 
 
 def as_pose(xform: wp.transform | Sequence[float] | None) -> wp.transform:
@@ -76,7 +74,7 @@ def as_pose(xform: wp.transform | Sequence[float] | None) -> wp.transform:
     """
     if xform is None:
         return wp.transform_identity()
-    values = _as_finite(xform, "xform", 7, "a position and a quaternion, wp.transform(p, q)")
+    values = as_numbers(xform, "xform", 7, kind="a position and a quaternion, wp.transform(p, q)")
     length = float(np.linalg.norm(values[3:]))
     if length < 1.0e-6:
         raise ValueError("xform: the quaternion is zero; wp.quat_identity() turns nothing")
@@ -93,7 +91,7 @@ def as_velocity(velocity: Sequence[float]) -> np.ndarray:
         TypeError: It is not three numbers.
         ValueError: A number is not finite.
     """
-    return _as_finite(velocity, "velocity", 3, "three numbers [m/s]")
+    return as_numbers(velocity, "velocity", 3, kind="three numbers [m/s]")
 
 
 def as_fixed(fixed: np.ndarray | Sequence[int] | None, vertex_count: int) -> np.ndarray:
@@ -110,15 +108,18 @@ def as_fixed(fixed: np.ndarray | Sequence[int] | None, vertex_count: int) -> np.
     mask = np.zeros(vertex_count, dtype=bool)
     if fixed is None:
         return mask
-    values = np.asarray(fixed)
+    try:
+        values = np.asarray(fixed)
+    except ValueError:
+        values = np.asarray(None)
     if values.dtype == bool:
         if values.shape != (vertex_count,):
             raise ValueError(f"the mask fixed must have the shape ({vertex_count},), got {values.shape}")
         return values.copy()
-    if values.size == 0:
+    if values.shape == (0,):
         return mask
     if not np.issubdtype(values.dtype, np.integer) or values.ndim != 1:
-        raise TypeError(f"fixed must be indices of cage vertices or a mask over all {vertex_count}, got {fixed!r}")
+        raise TypeError(f"fixed must be indices of cage vertices or a mask over all {vertex_count}, got {shown(fixed)}")
     wrong = values[(values < 0) | (values >= vertex_count)]
     if wrong.size:
         raise ValueError(f"fixed names vertex {wrong.flat[0]}, but the cage has {vertex_count} vertices")
@@ -158,24 +159,9 @@ def as_quadrature_count(quadrature: int | None, vertex_count: int) -> int:
     if quadrature is None:
         return max(300, 8 * vertex_count)
     count = as_index(quadrature, "quadrature, the number of quadrature points,")
-    if count < 0:
-        raise ValueError(f"quadrature is a number of points, 0 for a body without elasticity; got {count}")
+    if not 0 <= count <= MOST:
+        raise ValueError(f"quadrature is a number of points up to {MOST}, 0 for a body without elasticity; got {count}")
     return count
-
-
-def as_flag(value: bool, what: str) -> bool:
-    """Yes or no.
-
-    Args:
-        value: What was passed.
-        what: What it is, for the error.
-
-    Raises:
-        TypeError: It is neither.
-    """
-    if not isinstance(value, bool | np.bool_):
-        raise TypeError(f"{what} must be True or False, got {value!r}")
-    return bool(value)
 
 
 def as_capacity(capacity: Capacity | None, cage: Cage, surface: Surface, *, cuttable: bool) -> Capacity:
@@ -193,8 +179,7 @@ def as_capacity(capacity: Capacity | None, cage: Cage, surface: Surface, *, cutt
     """
     if capacity is None:
         return Capacity.for_cuts(cage, surface) if cuttable else Capacity.without_cuts(cage, surface)
-    if not isinstance(capacity, Capacity):
-        raise TypeError(f"capacity must be a Capacity, such as Capacity.for_cuts(cage, surface), got {capacity!r}")
+    as_instance(capacity, Capacity, "capacity", hint="Capacity.for_cuts(cage, surface, cuts=12) makes one")
     capacity.require(cage, surface)
     return capacity
 
@@ -266,15 +251,3 @@ def as_label(label: str | None, index: int, taken: Collection[str]) -> str:
     if label in taken:
         raise ValueError(f"there is a cage body {label!r} already; viewers and files tell bodies apart by their labels")
     return label
-
-
-def _as_finite(values: Sequence[float], what: str, count: int, kind: str) -> np.ndarray:
-    try:
-        array = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise TypeError(f"{what} must be {kind}, got {values!r}") from None
-    if array.shape != (count,):
-        raise TypeError(f"{what} must be {kind}, got {values!r}")
-    if not np.isfinite(array).all():
-        raise ValueError(f"{what} is not finite: {array.tolist()}")
-    return array

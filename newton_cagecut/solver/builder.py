@@ -11,6 +11,7 @@ plane of the world, in plane strain (two dimensions of the paper's elasticity, s
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import newton
@@ -19,9 +20,11 @@ import warp as wp
 
 from ..cage import Cage, check_inside
 from ..elastic import Material
+from ..geometry import as_flag, as_instance
 from ..surface import Surface
 from . import body_arguments as arguments
-from .body.definition import BodyDefinition, Capacity
+from .body.capacity import Capacity
+from .body.definition import BodyDefinition
 from .body.rest_frame import RestFrame
 
 FREQUENCY = "cagecut:body"
@@ -38,9 +41,20 @@ _ROWS = (
 )
 """Name, type, what it refers to, whose attribute it is, and default of each row; ``edit``: see ``edit_stamps``."""
 
+NO_TARGET = (math.inf, math.inf, math.inf)
+"""Where a vertex without a target is to go; not NaN, which Newton finds unequal to itself when builders are merged."""
+
 
 def register_custom_attributes(builder: newton.ModelBuilder) -> None:
-    """Declare the rows that describe cage bodies; calling it again changes nothing."""
+    """Declare the rows that describe cage bodies; calling it again changes nothing.
+
+    Args:
+        builder: The model builder.
+
+    Raises:
+        TypeError: It is none.
+    """
+    as_instance(builder, newton.ModelBuilder, "builder")
     frequency = newton.ModelBuilder.CustomFrequency(
         name="body", namespace="cagecut", label_attribute="cagecut:body_label"
     )
@@ -57,6 +71,16 @@ def register_custom_attributes(builder: newton.ModelBuilder) -> None:
                 default=default,
             )
         )
+    builder.add_custom_attribute(
+        newton.ModelBuilder.CustomAttribute(
+            name="target_q",
+            namespace="cagecut",
+            dtype=wp.vec3,
+            frequency=newton.Model.AttributeFrequency.PARTICLE,
+            assignment=newton.Model.AttributeAssignment.CONTROL,
+            default=wp.vec3(*NO_TARGET),
+        )
+    )
 
 
 def add_cage_body(
@@ -94,12 +118,12 @@ def add_cage_body(
         material: The elastic material; the default is soft rubber.
         xform: Pose of the rest frame in the world.
         velocity: Initial velocity [m/s]; fixed vertices do not travel with it.
-        fixed: Cage vertices that no step moves: their indices, or a mask over all; to move them, write their positions
-            to a state. A vertex that a cut makes on a face, among fixed ones, is fixed too.
+        fixed: Cage vertices that no step moves: their indices, or a mask over all; to move them, write targets
+            to ``control.cagecut.target_q``. A vertex that a cut makes on a face, among fixed ones, is fixed too.
         walks: Walks a point; 256 on a CPU and 2048 (the paper's) on CUDA by default.
         quadrature: Wanted number of quadrature points, by default 8 for each cage vertex and at least 300. 0 makes a
             body that is moved by its cage vertices alone, without elasticity.
-        capacity: Room for cuts; by default enough for several.
+        capacity: Room for cuts, by default ``Capacity.for_cuts(cage, surface)``, for a dozen of them.
         cuttable: Whether the body can be cut. Without, no walk cache is kept.
         contact_radius: Makes the surface points collide as particles of this radius [m]; None for no contact.
         thickness: Thickness of a plane body [m], which its mass is proportional to; 1 m by default.
@@ -119,10 +143,8 @@ def add_cage_body(
         ValueError: Attributes are not registered, a mesh point lies outside the cage, the mesh is not of the cage's
             dimension, or a value is out of range.
     """
-    if not isinstance(builder, newton.ModelBuilder):
-        raise TypeError(f"builder must be a newton.ModelBuilder, got {type(builder).__name__}")
-    if not isinstance(cage, Cage):
-        raise TypeError(f"cage must be a Cage, got {type(cage).__name__}")
+    as_instance(builder, newton.ModelBuilder, "builder")
+    as_instance(cage, Cage, "cage")
     if FREQUENCY not in builder.custom_frequencies:
         raise ValueError("call SolverCageCut.register_custom_attributes(builder) before add_cage_body")
     surface = arguments.as_surface(mesh, weld=weld, data=data)
@@ -139,7 +161,7 @@ def add_cage_body(
         walks=arguments.as_walks(walks, seed, options),
         seed=seed,
         quadrature_count=arguments.as_quadrature_count(quadrature, cage.vertex_count),
-        cuttable=arguments.as_flag(cuttable, "cuttable"),
+        cuttable=as_flag(cuttable, "cuttable"),
         capacity=arguments.as_capacity(capacity, cage, surface, cuttable=cuttable),
         contact_radius=arguments.as_contact_radius(contact_radius, cage),
         thickness=thickness,

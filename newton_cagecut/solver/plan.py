@@ -129,6 +129,8 @@ def _feature(held: HeldArray) -> str:
         return "elasticity"
     if first == "contact":
         return "contact"
+    if first == "uncut":
+        return "walk cache"
     if first in ("_triangles", "_surface_buffer"):
         return "surface"
     if first != "coordinates":

@@ -52,15 +52,16 @@ class SceneRecorder:
 def _body_frame(body: SimulatedBody, state: newton.State) -> BodyFrame:
     """A cage body in a state."""
     surface = body.surface
+    has_uvs = surface.uvs is not None or surface.own_corner_uvs is not None
     return BodyFrame(
-        name=body.label,
-        points=body.surface_points(state).numpy(),
+        name=body.label.replace("/", "_"),
+        points=body.surface_points(state).numpy().copy(),
         triangles=surface.triangles,
         triangle_cap=surface.triangle_cap,
         rest_points=surface.mesh.vertices,
-        velocities=body.surface_velocities(state).numpy(),
-        uvs=None if body.is_plane and surface.uvs is None else surface.corner_uvs(body.cage.walls),
-        has_skin_uvs=surface.uvs is not None,
+        velocities=body.surface_velocities(state),
+        uvs=None if body.is_plane and not has_uvs else surface.corner_uvs(body.cage.walls),
+        has_skin_uvs=has_uvs,
         cage_points=state.particle_q[body.vertices].numpy()[: body.cage.vertex_count],
         cage_faces=body.cage.faces,
     )

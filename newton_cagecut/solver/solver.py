@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from typing import TYPE_CHECKING
@@ -14,8 +13,9 @@ import newton
 import numpy as np
 import warp as wp
 
-from ..geometry import as_number
+from ..geometry import as_flag, as_instance, as_number, shown
 from ..section import Blade
+from .body.body_labels import body_labels
 from .body.body_pieces import BodyPiece
 from .body.cage_body import CageBody
 from .body.edit_stamps import EditStamps, state_edits
@@ -26,8 +26,12 @@ from .config import Config
 from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
+from .live.foreign_rows import ForeignRows
+from .live.live_solver import LiveSolver, refuse_gradients, refuse_state_gradients
+from .live.vertex_motion import targets_of
 from .plan import PlanEntry, plan_of, plan_of_scene
 from .progress_bars import fraction_bar
+from .step_arguments import StepArguments
 from .viewing import SurfaceViewer
 from .warm_up import warm_up
 
@@ -36,7 +40,7 @@ if TYPE_CHECKING:  # a scene without animations does not import USD
     from .scene_recorder import SceneRecorder
 
 
-class SolverCageCut(newton.solvers.SolverBase):
+class SolverCageCut(LiveSolver):
     """Simulates the cage bodies of a model and cuts them.
 
     Each body is a reduced elastic model whose shape functions are the harmonic coordinates of its cage, advanced by
@@ -66,7 +70,11 @@ class SolverCageCut(newton.solvers.SolverBase):
         **options: object,
     ) -> None:
         self._config = Config.of(config, options)
+        as_instance(model, newton.Model, "model", hint="builder.finalize() makes one")
+        if not callable(progress) and progress is not None:
+            as_flag(progress, "progress, unless it is a function or None,")
         super().__init__(model)
+        refuse_gradients(model)
         rows = getattr(model, "cagecut", None)
         definitions = list(rows.definition) if rows is not None else []
         if not definitions:
@@ -75,7 +83,7 @@ class SolverCageCut(newton.solvers.SolverBase):
                 "add_cage_body(builder, ...) before builder.finalize()"
             )
         count = len(definitions)
-        self._stamps = EditStamps(model, [definition.label for definition in definitions])
+        self._stamps = EditStamps(model, body_labels(model))
         with fraction_bar("weights", shown=progress) if not callable(progress) else nullcontext(progress) as report:
             self._simulated = [
                 SimulatedBody(
@@ -88,9 +96,12 @@ class SolverCageCut(newton.solvers.SolverBase):
                 for row in range(count)
             ]
         self._bodies = tuple(CageBody(body) for body in self._simulated)
+        parts = [part for body in self._bodies for part in (body.vertices, body.surface_particles) if part is not None]
+        self._foreign = ForeignRows(model, parts, self._config.foreign)
         self._viewer = SurfaceViewer()
         self._recorder: SceneRecorder | None = None
         labels, systems = zip(*((body.label, body.system) for body in self._simulated), strict=True)
+        self._arguments = StepArguments(model, self._stamps)
         self._watch = StepWatch(labels, systems, model.device)
 
     @classmethod
@@ -117,11 +128,17 @@ class SolverCageCut(newton.solvers.SolverBase):
         return self._bodies[self._row(body)]
 
     def _row(self, body: int | str) -> int:
-        for row, candidate in enumerate(self._simulated):
-            if body == candidate.label or (isinstance(body, int | np.integer) and body == row):
-                return row
-        labels = ", ".join(candidate.label for candidate in self._simulated)
-        raise ValueError(f"there is no cage body {body!r}; there are {len(self._simulated)}: {labels}")
+        labels = [candidate.label for candidate in self._simulated]
+        if isinstance(body, str) and body in labels:
+            return labels.index(body)
+        if isinstance(body, int | np.integer) and not isinstance(body, bool) and 0 <= body < len(labels):
+            return int(body)
+        raise ValueError(f"there is no cage body {shown(body)}; there are {len(labels)}: {', '.join(labels)}")
+
+    def _own(self, item: BodyCut | BodySnapshot, what: str) -> None:
+        """Refuse cuts and snapshots of another solver's bodies."""
+        if item.body not in self._simulated:
+            raise ValueError(f"the {what} is of a body of another solver; use the one that made it")
 
     def step(
         self,
@@ -133,7 +150,7 @@ class SolverCageCut(newton.solvers.SolverBase):
         *,
         observables: newton.solvers.SolverBase.Observables | None = None,
     ) -> None:
-        """Advance all cage bodies by one step; rigid bodies are copied through.
+        """Advance all cage bodies by one step; what is not theirs is copied through, see ``Config.foreign``.
 
         A body whose rows of ``state_in`` missed an edit is left where it is there, and counted: in a replay of a
         captured graph nothing else can be done. Outside of a capture that raises, then or at the next call.
@@ -141,32 +158,32 @@ class SolverCageCut(newton.solvers.SolverBase):
         Args:
             state_in: State before the step.
             state_out: State after it; may be the same.
-            control: Not used.
+            control: Where fixed vertices are to go: rows of ``control.cagecut.target_q``, one a particle [m]; infinity,
+                which all are at first, keeps a vertex where it is. The model's own without a control.
             contacts: Contacts of Newton's collision pipeline, for bodies with a contact radius.
             dt: Time step [s].
             observables: Not supported beyond Newton's checks.
 
         Raises:
-            TypeError: The state is none of a model with cage bodies.
-            ValueError: The time step is not positive and finite, the contacts were reduced by body pairs, or
-                ``state_in`` missed an edit of a body.
+            TypeError: An argument has the wrong type.
+            ValueError: The time step is not positive and finite, states or contacts are of another model, the contacts
+                were reduced by body pairs, or ``state_in`` missed an edit of a body.
         """
-        seconds = as_number(dt, "SolverCageCut.step dt")
-        if not 0.0 < seconds < math.inf:
-            raise ValueError(f"SolverCageCut.step dt must be a positive number of seconds, got {dt}")
-        self.validate_observables(observables, contacts)
+        seconds = self._arguments.check(state_in, state_out, control, contacts, dt)
+        if observables is not None:
+            as_instance(observables, self.Observables, "observables", hint="or None")
+            self.validate_observables(observables, contacts)
         self._require_unreduced_contacts(contacts)
+        targets = targets_of(self.model, control)
+        refuse_state_gradients(state_in)
         self._stamps.compare(state_in)
         if not self.model.device.is_capturing:
             self._watch.warn()
         if state_in is not state_out:
-            for name in ("body_q", "body_qd", "joint_q", "joint_qd"):
-                source, target = getattr(state_in, name, None), getattr(state_out, name, None)
-                if source is not None and target is not None:
-                    wp.copy(target, source)
+            self._foreign.copy(state_in, state_out)
             wp.copy(state_edits(state_out), state_edits(state_in))
         for body in self._simulated:
-            body.step(state_in, state_out, contacts, seconds)
+            body.step(state_in, state_out, contacts, seconds, targets)
         self._watch.note()
 
     def warm_up(self, *, progress: bool | None = None) -> None:
@@ -178,6 +195,8 @@ class SolverCageCut(newton.solvers.SolverBase):
         Args:
             progress: Whether to show a bar; None for in a terminal.
         """
+        if progress is not None:
+            as_flag(progress, "progress, unless it is None,")
         warm_up(
             self.model,
             self._simulated,
@@ -228,8 +247,10 @@ class SolverCageCut(newton.solvers.SolverBase):
         """
         if (by is None) == (to is None):
             raise ValueError("advance_cut needs either a length to advance by or to=depth")
+        self._own(as_instance(cut, BodyCut, "cut", hint="begin_cut(body, blade) returns one"), "cut")
         self._stamps.raise_missed()
-        return cut.advance(cut.depth + by if to is None else to, states)
+        depth = to if by is None else cut.depth + as_number(by, "by, the length to advance by,")
+        return cut.advance(depth, states)
 
     def snapshot(
         self, body: int | str = 0, *, states: Sequence[newton.State] = (), cuts: Sequence[BodyCut] = ()
@@ -256,8 +277,11 @@ class SolverCageCut(newton.solvers.SolverBase):
             snapshot: A snapshot of a body of this solver.
 
         Raises:
-            ValueError: The body was cut through another solver of the model meanwhile.
+            TypeError: It is no snapshot.
+            ValueError: It is of another solver, or the body was cut through one of the model meanwhile.
         """
+        as_instance(snapshot, BodySnapshot, "snapshot", hint="solver.snapshot(body) returns one")
+        self._own(snapshot, "snapshot")
         snapshot.restore()
 
     def surface(
@@ -277,7 +301,7 @@ class SolverCageCut(newton.solvers.SolverBase):
             Points in the world [m], shape (n, 3), float32, and triangles, shape (m, 3), int32; with ``data`` also
             arrays by name, of shapes (n, ...), (m, 3, ...) and (m, ...).
         """
-        found = self._simulated[self._row(body)]
+        found, data = self._simulated[self._row(body)], as_flag(data, "data")
         points, triangles = found.surface_points(state).numpy().copy(), found.surface.triangles.astype(np.int32)
         if not data:
             return points, triangles
@@ -296,6 +320,10 @@ class SolverCageCut(newton.solvers.SolverBase):
 
     def log(self, viewer: newton.viewer.ViewerBase, state: newton.State) -> None:
         """Show the surfaces in any Newton viewer, with the topology of this frame; caps have a colour of their own."""
+        if not callable(getattr(viewer, "log_mesh", None)):
+            raise TypeError(
+                f"viewer must be a viewer of Newton's, such as newton.viewer.ViewerGL(), got {shown(viewer)}"
+            )
         for body in self._simulated:
             self._viewer.log(viewer, body, state)
 

@@ -17,20 +17,19 @@ import numpy as np
 from ..cage import Wall
 from ..geometry import (
     PolygonMesh,
-    as_integers,
-    as_number,
-    as_points,
-    check_finite,
+    as_finite,
+    as_indices,
+    as_sequence,
     lifted,
     triangle_normals,
     units,
     winding_numbers,
 )
 from .attributes import Attributes
-from .welding import WELD, weld_seams
+from .surface_arguments import as_labels, as_point_values, as_rows, as_triangles, as_uvs, as_weld, check_flat
+from .welding import weld_seams
 
 _CANCELLED = 1e-9
-_FLAT = 1e-13
 _NO_LENGTH = 1e-30
 
 
@@ -79,18 +78,18 @@ class Surface:
             TypeError: If something is not numbers, or the triangles not integers.
             ValueError: If a shape, a value or an index is wrong; the text names the culprit.
         """
-        self.points = _as_rows(points, "points", (3, 2))
-        self.triangles = _as_triangles(triangles, len(self.points))
+        self.points = as_rows(points, "points", (3, 2))
+        self.triangles = as_triangles(triangles, len(self.points))
         if self.dimension == 2:
-            _check_flat(self.points[self.triangles], normals)
-        self.uvs, self.own_corner_uvs = _as_uvs(uvs, len(self.points), len(self.triangles))
-        self.normals = _as_point_values(normals, "normals", 3, len(self.points))
+            check_flat(self.points[self.triangles], normals)
+        self.uvs, self.own_corner_uvs = as_uvs(uvs, len(self.points), len(self.triangles))
+        self.normals = as_point_values(normals, "normals", 3, len(self.points))
         self.attributes = Attributes.of(data, len(self.points), len(self.triangles))
-        self.triangle_cap = _as_labels(triangle_cap, "triangle_cap", len(self.triangles))
+        self.triangle_cap = as_labels(triangle_cap, "triangle_cap", len(self.triangles))
         self.cap_side = np.zeros(len(self.triangles), dtype=np.int8)
-        self.site_key = _as_labels(point_key, "point_key", len(self.points))
+        self.site_key = as_labels(point_key, "point_key", len(self.points))
         self.site_points, self.point_site = self.points, None
-        self._join_seams(_as_weld(weld, self.points))
+        self._join_seams(as_weld(weld, self.points))
         self._freeze()
 
     @classmethod
@@ -238,7 +237,13 @@ class Surface:
         Args:
             walls: The cage's walls.
             scale: Texture coordinates a metre on caps [1/m].
+
+        Raises:
+            TypeError: If the walls are none, or the scale is not a number.
+            ValueError: If the scale is not positive, or a cap's wall is missing.
         """
+        scale = as_finite(scale, "scale, texture coordinates a metre,")
+        walls = self._walls(walls)
         corners = self.own_corner_uvs
         if corners is None:
             corners = (np.zeros((self.point_count, 2)) if self.uvs is None else self.uvs)[self.triangles]
@@ -255,7 +260,12 @@ class Surface:
 
         Args:
             walls: The cage's walls.
+
+        Raises:
+            TypeError: If the walls are none.
+            ValueError: If a cap's wall is missing.
         """
+        walls = self._walls(walls)
         if self.normals is None:
             corners = np.repeat(units(self.mesh.face_area_vector)[:, None], 3, axis=1)
         else:
@@ -264,6 +274,13 @@ class Surface:
             cap = self.triangle_cap == number
             corners[cap] = (1 - 2 * self.cap_side[cap].astype(float))[:, None, None] * walls[number].normal
         return corners
+
+    def _walls(self, walls: Sequence[Wall]) -> tuple[Wall, ...]:
+        """The walls, those of all caps among them."""
+        walls, last = as_sequence(walls, Wall, "walls"), int(self.triangle_cap.max(initial=-1))
+        if last >= len(walls):
+            raise ValueError(f"walls: a cap is on wall {last}, and there are {len(walls)}; pass cage.walls of this cut")
+        return walls
 
     def refuse_branches(self) -> None:
         """Raise if an edge has more than two triangles, or two that run along it in the same direction.
@@ -300,7 +317,12 @@ class Surface:
 
         Args:
             sites: Site ids, shape (n,).
+
+        Raises:
+            TypeError: If they are not integers.
+            ValueError: If one is of no site.
         """
+        sites = as_indices(sites, "sites", of="site", limit=self.site_count)
         if self.dimension == 2:
             return self._directions_from_border(sites)
         row = np.full(self.site_count, -1)
@@ -358,70 +380,3 @@ def _spatial_mesh(points: np.ndarray, triangles: np.ndarray) -> PolygonMesh:
     """Triangles with their half-edges, in space."""
     start = np.arange(0, 3 * len(triangles) + 1, 3)
     return PolygonMesh(lifted(points), start, triangles.reshape(-1).astype(np.int64))
-
-
-def _check_flat(corners: np.ndarray, normals: np.ndarray | None) -> None:
-    """Refuse triangles that are clockwise, and normals; corners have the shape (triangle_count, 3, 2)."""
-    if normals is not None:
-        raise ValueError("a flat surface has no normals of its own; leave them out")
-    (ax, ay), (bx, by) = np.moveaxis(corners[:, 1:] - corners[:, :1], 0, -1)
-    bad = np.flatnonzero(ax * by - ay * bx < -_FLAT * np.ptp(corners, axis=(0, 1)).max() ** 2)
-    if len(bad):
-        raise ValueError(
-            f"triangle {bad[0]} of the flat surface is clockwise ({len(bad)} in all); reverse the order of its points"
-        )
-
-
-def _as_rows(values: np.ndarray, name: str, widths: tuple[int, ...]) -> np.ndarray:
-    array = as_points(values, f"{name} of the surface", rows="point_count", widths=widths)
-    check_finite(array, f"{name} of the surface")
-    return array
-
-
-def _as_point_values(values: np.ndarray | None, name: str, width: int, count: int) -> np.ndarray | None:
-    if values is None:
-        return None
-    array = _as_rows(values, name, (width,))
-    if len(array) != count:
-        raise ValueError(f"the surface has {count} points but {len(array)} {name}; give each one")
-    return array
-
-
-def _as_uvs(
-    values: np.ndarray | None, point_count: int, triangle_count: int
-) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """Texture coordinates of points, or of corners."""
-    if values is None or np.ndim(values) != 3:
-        return _as_point_values(values, "uvs", 2, point_count), None
-    if np.shape(values) != (triangle_count, 3, 2):
-        raise ValueError(
-            f"uvs of the corners of {triangle_count} triangles must have shape ({triangle_count}, 3, 2), got "
-            f"{np.shape(values)}"
-        )
-    return None, _as_rows(np.reshape(values, (-1, 2)), "uvs", (2,)).reshape(-1, 3, 2)
-
-
-def _as_weld(weld: float | None, points: np.ndarray) -> float:
-    """Distance up to which ends of open edges are joined [m]."""
-    if weld is None:
-        return WELD * float(np.ptp(points, axis=0).max(initial=0.0))
-    return as_number(weld, "weld of the surface")
-
-
-def _as_triangles(values: np.ndarray, point_count: int) -> np.ndarray:
-    array = as_integers(values, "triangles of the surface", shape=("triangle_count", 3))
-    bad = np.flatnonzero(((array < 0) | (array >= point_count)).any(axis=1))
-    if len(bad):
-        raise ValueError(
-            f"triangle {bad[0]} of the surface is {array[bad[0]].tolist()}, but there are only {point_count} points"
-        )
-    bad = np.flatnonzero((array == np.roll(array, 1, axis=1)).any(axis=1))
-    if len(bad):
-        raise ValueError(f"triangle {bad[0]} of the surface uses a point twice: {array[bad[0]].tolist()}; remove it")
-    return array.astype(np.int32)
-
-
-def _as_labels(values: np.ndarray | None, name: str, count: int) -> np.ndarray:
-    if values is None:
-        return np.full(count, -1, dtype=np.int32)
-    return as_integers(values, f"{name} of the surface", shape=(count,)).astype(np.int32)

@@ -6,6 +6,7 @@ from .animation import AnimationWriter
 from .body_frame import BodyFrame
 from .layers import checked_path
 from .mesh_data import MeshData, check_mesh, turn_up
+from .outline import border_of
 from .read import read_cage, read_mesh, read_meshes, read_surface
 from .scene_frame import SceneFrame, SceneShape
 from .validate import validate_animation
@@ -17,6 +18,7 @@ __all__ = [
     "MeshData",
     "SceneFrame",
     "SceneShape",
+    "border_of",
     "check_mesh",
     "checked_path",
     "read_cage",

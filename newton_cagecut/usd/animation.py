@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from os import PathLike
@@ -13,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 from pxr import Tf, UsdGeom
 
-from ..geometry import as_points
+from ..geometry import as_finite, as_points, as_sequence, shown
 from .body_frame import BodyFrame
 from .body_prims import BodyOptions, BodyPrims
 from .layers import (
@@ -75,11 +74,12 @@ class AnimationWriter:
         velocities: bool | Literal["changes"] = "changes",
         separate_caps: bool = True,
     ):
-        if not (math.isfinite(fps) and fps > 0.0):
+        fps = as_finite(fps, "fps")
+        if fps <= 0.0:
             raise ValueError(f"fps must be positive, got {fps}")
         for name, value, word in (("normals", normals, "compact"), ("velocities", velocities, "changes")):
-            if value not in (True, False, word):
-                raise ValueError(f'{name} must be True, False or "{word}", got {value!r}')
+            if not (isinstance(value, bool) or (isinstance(value, str) and value == word)):
+                raise ValueError(f'{name} must be True, False or "{word}", got {shown(value)}')
         self.path = checked_path(path)
         self.stage = new_file_stage(self.path, up_axis, meters_per_unit)
         self.stage.SetTimeCodesPerSecond(fps)
@@ -169,7 +169,7 @@ class AnimationWriter:
         self._require_open()
         places = as_points([eye, target], "eye and target", rows="2", widths=(3,)) * self._scale
         distance = float(np.linalg.norm(places[1] - places[0]))
-        if not (math.isfinite(distance) and distance > 0.0):
+        if not (np.isfinite(distance) and distance > 0.0):
             raise ValueError(f"the camera must look from one place to another, got eye {eye} and target {target}")
         place_camera(self.stage, _CAMERA, places[0], places[1], distance)
         self._has_own_camera = True
@@ -213,13 +213,14 @@ class AnimationWriter:
                 edit of a body.
         """
         self._require_open()
-        if not math.isfinite(frame) or (self.frame is not None and frame <= self.frame):
+        as_finite(frame, "frame, the number of a frame,")
+        if self.frame is not None and frame <= self.frame:
             raise ValueError(f"frame must be larger than the last one ({self.frame}), got {frame}")
         scene = self._scene_of(bodies)
-        names = [body.name for body in scene.bodies]
+        checked = tuple(body.checked() for body in as_sequence(scene.bodies, BodyFrame, "bodies"))
+        names = [body.name for body in checked]
         if len(set(names)) < len(names):
             raise ValueError(f"each body comes once a frame, got {', '.join(names)}")
-        checked = tuple(body.checked() for body in scene.bodies)
         new_paths = {body.name: self._new_path(body.name) for body in checked if body.name not in self._bodies}
         for body in checked:
             if body.name in new_paths:

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..geometry import as_points
-from .layers import flat_faces
+from ..geometry import as_floats, as_integers, as_loops, as_points
+from .layers import checked_color, checked_name, flat_faces
 from .mesh_data import check_mesh
 from .outline import outline_loops
 
@@ -63,24 +63,27 @@ class BodyFrame:
         """Return the frame as NumPy arrays of the right types.
 
         Raises:
+            TypeError: Something is of a wrong type.
             ValueError: The arrays are empty, not finite or do not fit together.
         """
         points = self._rows("points")
-        triangles = np.asarray(self.triangles, dtype=np.int32)
-        if triangles.ndim != 2 or triangles.shape[1] != 3:
-            raise ValueError(f"body {self.name}: triangles must have shape (m, 3), got {triangles.shape}")
+        checked_name(self.name)
+        triangles = as_integers(self.triangles, f"body {self.name}: triangles", shape=("m", 3)).astype(np.int32)
         check_mesh(f"the surface of body {self.name}", points, *flat_faces(triangles))
-        cap = np.full(len(triangles), -1) if self.triangle_cap is None else np.asarray(self.triangle_cap)
-        if cap.shape != (len(triangles),):
-            raise ValueError(f"body {self.name}: triangle_cap must have shape ({len(triangles)},), got {cap.shape}")
+        cap = np.full(len(triangles), -1)
+        if self.triangle_cap is not None:
+            cap = as_integers(self.triangle_cap, f"body {self.name}: triangle_cap", shape=(len(triangles),))
+        for name in ("skin_color", "cap_color"):
+            checked_color(getattr(self, name), f"body {self.name}: {name}")
         rest_points = points if self.rest_points is None else self._like_points("rest_points", points)
         velocities = None if self.velocities is None else self._like_points("velocities", points)
-        uvs = None if self.uvs is None else np.asarray(self.uvs, dtype=np.float64)
+        uvs = None if self.uvs is None else as_floats(self.uvs, f"body {self.name}: uvs must be numbers")
         if uvs is not None and uvs.shape != (len(triangles), 3, 2):
             raise ValueError(f"body {self.name}: uvs must have shape ({len(triangles)}, 3, 2), got {uvs.shape}")
         cage_points = self.cage_points
         if cage_points is not None:
             cage_points = self._rows("cage_points")
+            as_loops(self.cage_faces, f"the cage of body {self.name}")
             if self.has_plane_cage:
                 outline_loops(f"the cage of body {self.name}", self.cage_faces, len(cage_points))
             else:

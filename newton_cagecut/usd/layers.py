@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Sequence
-from os import PathLike, fspath
+from os import PathLike
 
 import numpy as np
 from pxr import Gf, Sdf, Tf, Usd, UsdGeom, Vt
+
+from ..geometry import as_finite, as_instance, as_loops, as_numbers, as_path, shown
 
 _EXTENSIONS = (".usd", ".usda", ".usdc")
 
@@ -19,10 +20,11 @@ def checked_path(path: str | PathLike) -> str:
     """Return ``path`` as text.
 
     Raises:
+        TypeError: It is no path.
         ValueError: The name does not end in .usd, .usda or .usdc.
         FileNotFoundError: The folder does not exist.
     """
-    text = fspath(path)
+    text = as_path(path)
     if os.path.splitext(text)[1] not in _EXTENSIONS:
         raise ValueError(f"{text}: the name of a USD file must end in {', '.join(_EXTENSIONS)}")
     folder = os.path.dirname(os.path.abspath(text))
@@ -37,6 +39,7 @@ def checked_name(name: str) -> str:
     Raises:
         ValueError: USD cannot take it.
     """
+    as_instance(name, str, "the name of a prim")
     if not Tf.IsValidIdentifier(name):
         raise ValueError(f"{name!r} is no name for a USD prim; {Tf.MakeValidIdentifier(name)!r} would be")
     return name
@@ -69,9 +72,9 @@ def new_file_stage(path: str, up_axis: str, meters_per_unit: float) -> Usd.Stage
 
 
 def _check_metrics(up_axis: str, meters_per_unit: float) -> None:
-    if up_axis not in ("Y", "Z"):
-        raise ValueError(f'up_axis must be "Y" or "Z", got {up_axis!r}')
-    if not (math.isfinite(meters_per_unit) and meters_per_unit > 0.0):
+    if not (isinstance(up_axis, str) and up_axis in ("Y", "Z")):
+        raise ValueError(f'up_axis must be "Y" or "Z", got {shown(up_axis)}')
+    if as_finite(meters_per_unit, "meters_per_unit") <= 0.0:
         raise ValueError(f"meters_per_unit must be positive, got {meters_per_unit}")
 
 
@@ -155,12 +158,36 @@ def extent(points: np.ndarray) -> Vt.Vec3fArray:
 
 def color(value: tuple[float, float, float]) -> Gf.Vec3f:
     """Return a colour as USD's color3f."""
-    return Gf.Vec3f(*(float(channel) for channel in value))
+    return Gf.Vec3f(*checked_color(value, "the colour").tolist())
+
+
+def checked_color(value: tuple[float, float, float], what: str) -> np.ndarray:
+    """Return a colour, shape ``(3,)``.
+
+    Args:
+        value: What was passed.
+        what: What it is, for the error.
+
+    Raises:
+        TypeError: It is not three numbers.
+        ValueError: One is not finite, or negative.
+    """
+    channels = as_numbers(value, what, 3, kind="red, green and blue, three numbers from 0 to 1")
+    if channels.min() < 0.0:
+        raise ValueError(f"{what} is negative: {channels.tolist()}")
+    return channels
 
 
 def flat_faces(faces: np.ndarray | Sequence[Sequence[int]]) -> tuple[np.ndarray, np.ndarray]:
-    """Return vertices of each face and all vertex indices of ``faces``, an ``(m, 3)`` array or polygons."""
-    if isinstance(faces, np.ndarray):
+    """Return vertices of each face and all vertex indices of ``faces``, an ``(m, 3)`` array or polygons.
+
+    Args:
+        faces: The faces.
+
+    Raises:
+        TypeError: They are no faces.
+    """
+    if isinstance(faces, np.ndarray) and faces.ndim == 2 and np.issubdtype(faces.dtype, np.integer):
         return np.full(len(faces), faces.shape[1], dtype=np.int32), faces.reshape(-1).astype(np.int32)
-    counts = np.array([len(face) for face in faces], dtype=np.int32)
-    return counts, np.array([vertex for face in faces for vertex in face], dtype=np.int32)
+    start, vertex = as_loops(faces, "the mesh")
+    return np.diff(start).astype(np.int32), vertex.astype(np.int32)

@@ -38,6 +38,13 @@ class MeshData:
     corner_normals: np.ndarray | None = None
 
     @property
+    def triangle_corners(self) -> np.ndarray:
+        """The corner, of all corners face after face, at each corner of the triangles, shape ``(m, 3)``, int32."""
+        counts = np.fromiter(map(len, self.faces), dtype=np.int64, count=len(self.faces))
+        corners = np.fromiter(chain.from_iterable(self.faces), dtype=np.int64)
+        return polygon_triangles(self.points[corners], counts, np.arange(len(corners)))
+
+    @property
     def triangles(self) -> np.ndarray:
         """The faces cut into triangles, shape ``(m, 3)``, int32."""
         counts = np.fromiter(map(len, self.faces), dtype=np.int64, count=len(self.faces))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""Plane cages as curves: linear and periodic ones, each a loop of segments, in a plane normal to z."""
+"""Plane cages as curves, each a loop of segments, or as flat meshes, whose border they are, in a plane normal to z."""
 
 from __future__ import annotations
 
@@ -98,3 +98,39 @@ def flat_points(label: str, points: np.ndarray) -> np.ndarray:
             "through point 0; turn it, with up_axis or in the file, so that it lies in one"
         )
     return points[:, :2]
+
+
+def border_of(
+    label: str, points: np.ndarray, counts: np.ndarray, indices: np.ndarray
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the border of a flat mesh, as a plane cage: points, shape ``(n, 2)``, and segments, shape ``(n, 2)``.
+
+    The inside is to the left of each segment.
+
+    Args:
+        label: What the errors call the mesh.
+        points: The points, shape ``(k, 3)``.
+        counts: Corners of each face, shape ``(F,)``.
+        indices: Point ids of all corners, face after face.
+
+    Returns:
+        The border, or ``None`` where the mesh is not flat or has none.
+
+    Raises:
+        ValueError: The mesh lies in a plane that is not normal to z.
+    """
+    spread = points - points.mean(axis=0)
+    if np.linalg.matrix_rank(spread.T @ spread, tol=_FLAT**2 * float((spread**2).sum())) > 2:
+        return None
+    ends = np.cumsum(counts)
+    following = np.arange(1, len(indices) + 1)
+    following[ends - 1] = ends - counts
+    edges = np.stack([indices, indices[following]], axis=1)
+    edges = edges[~np.isin(edges @ [len(points), 1], edges @ [1, len(points)])]
+    if len(edges) == 0:
+        return None
+    flat = flat_points(label, points)
+    (ax, ay), (bx, by) = np.moveaxis(flat[edges] - flat.mean(axis=0), 0, -1)
+    edges = edges[:, ::-1] if (ax * by - ay * bx).sum() < 0.0 else edges
+    used, segments = np.unique(edges, return_inverse=True)
+    return flat[used], segments.reshape(-1, 2)

@@ -16,7 +16,7 @@ from ..cage import Cage
 from ..surface import Surface
 from .layers import points_at
 from .mesh_data import MeshData, check_mesh, turn_up
-from .outline import flat_points, read_outline
+from .outline import border_of, flat_points, read_outline
 
 _SEAM_TOLERANCE = 1e-5  # of texture space: corners of one vertex that agree to this are one texture coordinate
 _FLAT = 1e-6  # of the size of a mesh: what is thinner has a dimension less
@@ -79,8 +79,9 @@ def read_cage(
 ) -> Cage:
     """Read a mesh as a cage; its polygons become the cage's faces.
 
-    Where there is no mesh, linear and periodic ``BasisCurves`` are read as a plane cage: each curve is a loop of
-    segments. They lie in a plane normal to z; with the outer loops clockwise, all are reversed.
+    A flat mesh that is open is read as the plane cage of its border. Where there is no mesh, linear and periodic
+    ``BasisCurves`` are read as a plane cage: each curve is a loop of segments. They lie in a plane normal to z; with
+    the outer loops clockwise, all are reversed.
 
     Args:
         source: As in :func:`read_mesh`.
@@ -98,7 +99,9 @@ def read_cage(
     stage = open_stage(source)
     if _prims(stage, prim_path, UsdGeom.Mesh) or not _prims(stage, prim_path, UsdGeom.BasisCurves):
         mesh = read_mesh(stage, prim_path, up_axis=up_axis)
-        return Cage(mesh.points, mesh.faces, **options)
+        counts = np.array([len(face) for face in mesh.faces])
+        border = border_of(f"mesh {mesh.name}", mesh.points, counts, np.concatenate(mesh.faces))
+        return Cage(*(border or (mesh.points, mesh.faces)), **options)
     curves = UsdGeom.BasisCurves(_find_prim(stage, prim_path, UsdGeom.BasisCurves))
     label = f"curves {curves.GetPath()} of {stage.GetRootLayer().identifier}"
     points, segments = read_outline(label, curves)
@@ -125,18 +128,24 @@ def read_surface(
         options: Keyword arguments of :class:`~newton_cagecut.surface.Surface`.
 
     Returns:
-        The surface [m], with its texture coordinates.
+        The surface [m], with its texture coordinates; those with seams belong to the triangles' corners.
 
     Raises:
         FileNotFoundError: There is no such file.
         ValueError: As in :func:`read_mesh`, or the mesh is no valid surface, or not flat where it should be.
     """
-    mesh = read_mesh(source, prim_path, up_axis=up_axis)
-    points, triangles = mesh.points, mesh.triangles
+    stage = open_stage(source)
+    mesh = _read_prim(_find_prim(stage, prim_path, UsdGeom.Mesh), up_axis)
+    points, uvs, triangles = mesh.points, mesh.uvs, mesh.triangles
+    if mesh.corner_uvs is not None:
+        corners = mesh.triangle_corners
+        triangles, uvs = np.concatenate(mesh.faces)[corners], mesh.corner_uvs[corners]
     if flat:
         points = flat_points(f"mesh {mesh.name}", points)
-        triangles = _counterclockwise(points, triangles)
-    return Surface(points, triangles, uvs=mesh.uvs, **options)
+        turned = _counterclockwise(points, triangles)
+        uvs = uvs if uvs is None or uvs.ndim == 2 or turned is triangles else uvs[:, ::-1]
+        triangles = turned
+    return Surface(points, triangles, uvs=uvs, **options)
 
 
 def _counterclockwise(points: np.ndarray, loops: np.ndarray) -> np.ndarray:

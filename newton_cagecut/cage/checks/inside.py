@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...geometry import simplex_distances
+from ..inflation import holding_distance
 
 if TYPE_CHECKING:
     from ..cage import Cage
@@ -42,9 +43,11 @@ def check_inside(cage: Cage, points: np.ndarray, *, which: np.ndarray | None = N
     far = np.count_nonzero(distance > cage.length_tolerance)
     if far:
         worst = int(np.argmax(distance))
+        needed = holding_distance(cage, points[outside], float(distance[worst]))
+        advice = "make the cage larger" if needed is None else f"cage.inflated({needed:g}) holds them; inflate it"
         raise ValueError(
             f"{far} of {len(points)} points lie outside the cage, the farthest (point {outside[worst]}) by "
-            f"{distance[worst]:.4g} m; make the cage larger or move the points into it"
+            f"{distance[worst]:.4g} m; {advice} or move the points into it"
         )
     return outside
 

@@ -180,7 +180,7 @@ def check_planarity(mesh: PolygonMesh, normals: np.ndarray, tolerance: float) ->
         worst = mesh.face_vertex[begin + int(np.argmax(np.abs(height[begin:end] - height[begin:end].mean())))]
         raise ValueError(
             f"face {bad} of the cage is not planar: its vertices (worst: {worst}) spread over {spread[bad]:.3g} across "
-            f"its plane, the tolerance is {tolerance:.3g}; triangulate it or flatten it"
+            f"its plane, the tolerance is {tolerance:.3g}; triangulate it (repair=True does) or flatten it"
         )
 
 
@@ -196,4 +196,6 @@ def check_volume(mesh: PolygonMesh) -> None:
     volume = float(mesh.face_volume.sum())
     if volume <= 0.0:
         what = "area" if mesh.dimension == 2 else "volume"
-        raise ValueError(f"the cage is inside out: its {what} is {volume:.6g}; reverse all {mesh.face_count} faces")
+        raise ValueError(
+            f"the cage is inside out: its {what} is {volume:.6g}; reverse all {mesh.face_count} faces, or repair=True"
+        )

@@ -8,11 +8,12 @@ of the blade, each at its depth, as a part of the blade.
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry import as_number
+from ...geometry import as_instance, as_number
 from ...section import Blade, BladePlane, Hinge, Section, clear_plane, clear_turn
 from ..cage import Cage
 from .cage_strip import CageStrip, StripState
@@ -70,10 +71,8 @@ class Cut:
             TypeError: If the arguments are not a cage and a blade.
             ValueError: If the blade is not of the cage's dimension, or starts inside the body where it may not.
         """
-        if not isinstance(cage, Cage):
-            raise TypeError(f"cage must be a Cage, got {type(cage).__name__}")
-        if not isinstance(blade, Blade):
-            raise TypeError(f"blade must be a Blade, got {type(blade).__name__}")
+        as_instance(cage, Cage, "cage")
+        as_instance(blade, Blade, "blade")
         if blade.dimension != cage.dimension:
             raise ValueError(
                 f"the cage is of dimension {cage.dimension} and the blade of dimension {blade.dimension}; give a blade "
@@ -84,6 +83,7 @@ class Cut:
         self._identity = object()
         self._blade = blade
         self._state = self._from_outside(cage)
+        _warn_of_slivers(cage, BladePlane.of(blade), self.plane)
 
     def _from_outside(self, cage: Cage) -> CutState:
         """The state before the blade touches a cage."""
@@ -195,10 +195,11 @@ class Cut:
             cage: The cage as it is now, made by other edits from this cut's.
 
         Raises:
+            TypeError: If the cage is none.
             ValueError: If the cage is not one that came of this cut's, or it has grown across the cut's front line,
                 beside where the cut has come. Nothing has changed then.
         """
-        if cage.walls[: len(self.cage.walls)] != self.cage.walls:
+        if as_instance(cage, Cage, "cage").walls[: len(self.cage.walls)] != self.cage.walls:
             raise ValueError("the cage did not come of this cut's: it lacks some of its walls; begin a new cut")
         now = self._state
         if self.complete:
@@ -268,6 +269,23 @@ class Cut:
         opened = strip.advance(strip.start, depth - begun, depth)[0] if depth > begun else strip.start
         self._state = CutState(kept, depth, opened)
         return self.cage
+
+
+def _warn_of_slivers(cage: Cage, wanted: BladePlane, plane: BladePlane) -> None:
+    """Warn of faces in whose planes a blade was put, if it was moved into the body behind them."""
+    mesh = cage.mesh
+    far = np.abs(wanted.distance(cage.vertices))[mesh.face_vertex]
+    in_plane = np.maximum.reduceat(far, mesh.face_start[:-1]) <= cage.length_tolerance
+    inward = np.array([wall.normal for wall in cage.walls])[cage.face_wall] @ plane.normal
+    inward *= 1.0 - 2.0 * cage.face_side
+    depth = -inward * float((plane.origin - wanted.origin) @ plane.normal)
+    slivers = np.flatnonzero(in_plane & (depth > 0.0))
+    if len(slivers):
+        warnings.warn(
+            f"the blade lies in the plane of face {slivers[0]} of the cage and would cut off a sliver "
+            f"{depth[slivers[0]]:.2g} m thick behind it; move the blade along its normal, into the body or out of it",
+            stacklevel=3,
+        )
 
 
 def _find_hinge(cage: Cage, wall: int | None, plane: BladePlane) -> Hinge:

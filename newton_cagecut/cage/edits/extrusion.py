@@ -103,10 +103,11 @@ def _checked(cage: Cage, face: int, distance: float) -> tuple[int, float]:
     if not 0 <= face < cage.face_count:
         raise ValueError(f"the cage has faces 0 to {cage.face_count - 1}, there is no face {face}")
     distance = as_number(distance, "the distance that a face moves")
-    if not cage.length_tolerance < distance < np.inf:
+    farthest = cage.length_tolerance / np.finfo(float).eps  # beyond it rounding is coarser than the tolerance
+    if not cage.length_tolerance < distance <= farthest:
         raise ValueError(
             f"a face moves outward by a finite distance beyond the cage's tolerance of {cage.length_tolerance:.3g} m, "
-            f"got {distance:g} m; put an obstacle in or cut to take from the body"
+            f"at most {farthest:.3g} m, got {distance:g} m; put an obstacle in or cut to take from the body"
         )
     _check_uncut(cage, face)
     return face, distance
@@ -119,9 +120,10 @@ def _check_uncut(cage: Cage, face: int) -> None:
         raise ValueError(f"face {face} of the cage is a side of a cut, of which the wall stays; choose another face")
     others = np.setdiff1d(np.flatnonzero(cage.face_wall == wall), face)
     if len(others):
+        split = "a cut or refine() has split" if any(wall.two_sided for wall in cage.walls) else "refine() has split"
         raise ValueError(
-            f"a cut has split face {face} of the cage from face {others[0]}, and their wall cannot retire in part; "
-            "move it before it is cut, or choose another face"
+            f"{split} face {face} of the cage from face {others[0]}, and their wall cannot retire in part; move or "
+            "extrude faces before that, or choose another face"
         )
     if any(cage.walls[cage.face_wall[neighbour]].two_sided for neighbour in _neighbours(cage.mesh, face)):
         raise ValueError(f"a cut has slit face {face} of the cage; move it before it is cut, or choose another face")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...geometry import as_instance
 from ..wall import face_walls
 from .edit import CageEdit, swept_faces
 from .face_contact import find_contact
@@ -63,8 +64,7 @@ def insert_obstacle(cage: Cage, obstacle: Cage) -> CageEdit:
 
 def _as_solid(cage: Cage, obstacle: Cage) -> Cage:
     """The obstacle as a cage of the same tolerance, with a wall for each face."""
-    if not isinstance(obstacle, type(cage)):
-        raise TypeError(f"the obstacle must be a Cage, got {type(obstacle).__name__}")
+    as_instance(obstacle, type(cage), "the obstacle")
     if obstacle.dimension != cage.dimension:
         raise ValueError(f"an obstacle of dimension {obstacle.dimension} does not fit a cage of {cage.dimension}")
     for face, wall in enumerate(obstacle.face_wall.tolist()):

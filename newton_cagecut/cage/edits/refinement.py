@@ -27,9 +27,7 @@ def refined(cage: Cage) -> tuple[PolygonMesh, np.ndarray]:
     Raises:
         ValueError: If the cage has been cut.
     """
-    cuts = [number for number, wall in enumerate(cage.walls) if wall.two_sided]
-    if cuts:
-        raise ValueError(f"the cage has been cut (wall {cuts[0]}); refine it before it is cut")
+    refuse_cuts(cage, "refine it")
     polygons = _Polygons(cage.vertices)
     if cage.dimension == 2:
         for face, (a, b) in enumerate(cage.faces):
@@ -43,6 +41,21 @@ def refined(cage: Cage) -> tuple[PolygonMesh, np.ndarray]:
             for triangle in cage.triangles[cage.triangle_face == face].tolist():
                 polygons.add(face, *_four_triangles(polygons, triangle))
     return polygons.mesh(), np.array(polygons.parent)
+
+
+def refuse_cuts(cage: Cage, deed: str) -> None:
+    """Raise if a cage has been cut.
+
+    Args:
+        cage: The cage.
+        deed: What was to be done, for the text.
+
+    Raises:
+        ValueError: If so.
+    """
+    cuts = [number for number, wall in enumerate(cage.walls) if wall.two_sided]
+    if cuts:
+        raise ValueError(f"the cage has been cut (wall {cuts[0]}); {deed} before it is cut")
 
 
 class _Polygons:

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import warp as wp
 
+from ...geometry import as_instance
+
 wp.set_module_options({"enable_backward": False})
 
 NEARLY_EQUAL = wp.constant(wp.float64(1.0e-5))
@@ -31,6 +33,10 @@ class ConstitutiveModel:
             and block if not given.
         antisymmetric_modes: (s: vec3d, mu, lam) -> stiffness of the three antisymmetric shears [Pa], vec3d; made from
             stress and block if not given.
+
+    Raises:
+        TypeError: If the name is not text or a function none of Warp's.
+        ValueError: If the name is empty.
     """
 
     name: str
@@ -41,6 +47,11 @@ class ConstitutiveModel:
     antisymmetric_modes: wp.Function | None = None
 
     def __post_init__(self) -> None:
+        if not as_instance(self.name, str, "ConstitutiveModel name"):
+            raise ValueError("ConstitutiveModel name is empty; give it one that no other model has")
+        for name in ("energy", "stress", "stretch_block", "symmetric_modes", "antisymmetric_modes"):
+            if getattr(self, name) is not None or name in ("energy", "stress", "stretch_block"):
+                as_instance(getattr(self, name), wp.Function, f"ConstitutiveModel {name}", hint="@wp.func makes one")
         for name, sign in (("symmetric_modes", -1.0), ("antisymmetric_modes", 1.0)):
             if getattr(self, name) is None:
                 object.__setattr__(self, name, _make_modes(self.stress, self.stretch_block, sign))

@@ -23,7 +23,7 @@ from ..plane_confinement import in_plane, inverse_in_plane
 from ..step_kernels import add_inertia, tie
 from .cholesky import make_factor_solve, wait
 from .lanes import entry, lane_struct, lane_type, make_gather, make_scatter
-from .point_forces import PointForces, make_point_value
+from .point_forces import PointForces, as_four, as_three, point_value, pull_back, unpacked
 from .stiffness_matrix import DenseMatrix
 
 wp.set_module_options({"enable_backward": False})
@@ -35,12 +35,12 @@ class Search:
 
     direction: wp.array[wp.vec3]
     """The search direction, one a row."""
-    components: wp.array2d[float]
-    """The same by components, shape (3, row_capacity)."""
+    fours: wp.array[wp.vec4]
+    """The same with zeros after the vectors, one a row."""
     product: wp.array[wp.vec3]
     """The matrix's product with the direction, one a row."""
-    pulled: wp.array2d[float]
-    """What points pull, by components, shape (3, row_capacity)."""
+    pulled: wp.array[wp.vec4]
+    """What points pull, one a row."""
     conditioned: wp.array[wp.vec3]
     """The preconditioned residual, one a row."""
     rows: wp.array[float]
@@ -58,7 +58,7 @@ def make_search(row_count: int, device: wp.Device) -> Search:
     search = Search()
     with wp.ScopedDevice(device):
         search.direction, search.product, search.conditioned = (wp.zeros(row_count, dtype=wp.vec3) for _ in range(3))
-        search.components, search.pulled = (wp.zeros((3, row_count), dtype=float) for _ in range(2))
+        search.fours, search.pulled = (wp.zeros(row_count, dtype=wp.vec4) for _ in range(2))
         search.rows, search.solved = (wp.zeros(3 * row_count, dtype=float) for _ in range(2))
         search.energy = wp.zeros(2, dtype=wp.float64)
         search.iterations = wp.zeros(1, dtype=int)
@@ -70,7 +70,6 @@ def make_product(width: int) -> wp.Function:
     """The function that multiplies the search direction with the system's matrix; all threads of the block call it."""
     lane, Lanes = lane_type(width), lane_struct(width)
     gather_block, scatter = make_gather(width), make_scatter(width)
-    point_value, pull_back = make_point_value(width), make_pull_back(width)
 
     @wp.func
     def stress_block(k: int, lanes: Lanes, changes: wp.array2d(dtype=lane)):
@@ -96,8 +95,8 @@ def make_product(width: int) -> wp.Function:
             gather_block(k, search.direction, body, lanes, changes)
             stress_block(k, lanes, changes)
         for slot in range(thread, points.count[0], wp.block_dim()):
-            value = point_value(slot, search.components, count, points)
-            points.product[slot] = points.system[slot] * value
+            value = point_value(slot, search.fours, count, points)
+            points.product[slot] = as_four(unpacked(points.system[slot]) * value)
         wait()
         pull_back(thread, count, points, search.pulled)
         wait()
@@ -105,7 +104,7 @@ def make_product(width: int) -> wp.Function:
             result = wp.vec3()
             if system.fixed[i] == 0:
                 result = add_inertia(result, i, search.direction, body) + scatter(i, lanes)
-                result += wp.vec3(search.pulled[0, i], search.pulled[1, i], search.pulled[2, i])
+                result += as_three(search.pulled[i])
                 if body.stabilizing_stiffness[i, i] > 0.0:
                     result += float(body.material[0][0] * step.scales[ELASTIC_STIFFNESS]) * tie(
                         i, search.direction, body
@@ -113,35 +112,6 @@ def make_product(width: int) -> wp.Function:
             search.product[i] = result
 
     return multiply
-
-
-@functools.cache
-def make_pull_back(width: int) -> wp.Function:
-    """The function that sums what the touched points pull; all threads of the block call it."""
-    lane = lane_type(width)
-
-    @wp.func
-    def pull_back(thread: int, vertex_count: int, points: PointForces, pulled: wp.array2d(dtype=float)):
-        columns = points.weights.shape[1]
-        for block in range(thread, (vertex_count + wp.static(width - 1)) / wp.static(width), wp.block_dim()):
-            start = wp.static(width) * block
-            x, y, z = lane(), lane(), lane()
-            for slot in range(points.count[0]):
-                row = points.first_row + points.touched[slot]
-                weight = lane()
-                for s in range(wp.static(width)):
-                    if start + s < columns:
-                        weight[s] = points.weights[row, start + s]
-                pull = points.product[slot]
-                x += pull[0] * weight
-                y += pull[1] * weight
-                z += pull[2] * weight
-            for s in range(wp.static(width)):
-                pulled[0, start + s] = x[s]
-                pulled[1, start + s] = y[s]
-                pulled[2, start + s] = z[s]
-
-    return pull_back
 
 
 @functools.cache
@@ -197,9 +167,7 @@ def turn_direction(thread: int, count: int, beta: float, search: Search):
     for i in range(thread, count, wp.block_dim()):
         d = search.conditioned[i] + beta * search.direction[i]
         search.direction[i] = d
-        search.components[0, i] = d[0]
-        search.components[1, i] = d[1]
-        search.components[2, i] = d[2]
+        search.fours[i] = as_four(d)
 
 
 @wp.func

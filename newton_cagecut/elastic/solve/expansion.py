@@ -10,7 +10,7 @@ import warp as wp
 from ..arrays import ELASTIC_STIFFNESS, BodyArrays, LinearSystem, StepArrays
 from ..stiffness import Stiffness
 from .lanes import entry, lane_struct, lane_type, make_lane_sum
-from .point_forces import PointForces
+from .point_forces import PointForces, unpacked
 
 wp.set_module_options({"enable_backward": False})
 
@@ -42,6 +42,14 @@ def expand_stiffness(step: StepArrays):
     for m in range(9):
         for n in range(m, 9):
             step.moduli[entry(m, n), q] = K[m, n]
+    if step.blocks.shape[0] > 0:
+        for a in range(3):
+            for b in range(3):
+                block = wp.mat33()
+                for c in range(3):
+                    for d in range(3):
+                        block[c, d] = K[3 * a + c, 3 * b + d]
+                step.blocks[q, 3 * a + b] = block
 
 
 @functools.cache
@@ -68,7 +76,7 @@ def make_block_kernel(width: int) -> wp.Kernel:
                 block[a, b] = block[a, b] + lane_sum(total)
         for slot in range(points.count[0]):
             weight = points.weights[points.first_row + points.touched[slot], i]
-            block += (weight * weight) * points.system[slot]
+            block += (weight * weight) * unpacked(points.system[slot])
         system.blocks[i] = block
 
     return find_blocks

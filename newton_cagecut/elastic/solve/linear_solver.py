@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import warp as wp
@@ -15,12 +16,12 @@ from . import lanes
 from .cholesky import make_factor_kernel
 from .conjugate_gradient import make_search, make_solve_kernel
 from .expansion import expand_stiffness, make_block_kernel
-from .point_forces import PointForces, no_point_forces
-from .point_kernels import make_point_product_kernel, make_point_residual_kernel
-from .stiffness_matrix import COLUMNS, ROWS, make_assembly_kernel, make_dense_matrix, make_point_kernel
+from .point_forces import PointForces, make_point_forces
+from .point_kernels import add_point_product, add_point_residual
+from .stiffness_matrix import ROWS, add_points, make_assembly_kernel, make_column_kernel, make_dense_matrix
 
-DENSE_VERTICES = 600
-"""Vertices, spare ones included, up to which a factor pays; measured by ``benchmarks.solve``."""
+_NEARLY_INCOMPRESSIBLE = 0.45
+"""Poisson's ratio from which on the iterations without a factor are many."""
 
 
 class SolveLimits(NamedTuple):
@@ -30,8 +31,15 @@ class SolveLimits(NamedTuple):
     """Most iterations of a solve."""
     tolerance: float = 1.0e-5
     """Factor by which a solve shrinks the preconditioned residual."""
-    dense_vertices: int = DENSE_VERTICES
-    """Most vertices, spare ones included, with which a dense factor conditions the iterations."""
+    dense_vertices: int | None = None
+    """Most vertices in use, when the system is made, with which a dense factor conditions the iterations; None for what
+    ``benchmarks.solve`` has measured to pay."""
+
+    def measured(self, poisson: float) -> SolveLimits:
+        """The same with the number of vertices up to which a factor pays at a Poisson's ratio, unless it is given."""
+        if self.dense_vertices is not None:
+            return self
+        return self._replace(dense_vertices=300 if poisson >= _NEARLY_INCOMPRESSIBLE else 110)
 
 
 class LinearSolver:
@@ -43,41 +51,61 @@ class LinearSolver:
         body: The body.
         step: What its steps work on.
         system: The system.
-        limits: How exactly they are solved.
+        limits: How exactly they are solved, measured.
     """
 
     def __init__(self, body: BodyArrays, step: StepArrays, system: LinearSystem, limits: SolveLimits) -> None:
         capacity, self.device = body.rest.shape[0], body.rest.device
         self.body, self.step, self.system, self.limits = body, step, system, limits
-        self.is_dense = capacity <= limits.dense_vertices
+        self.is_dense = int(body.vertex_count.numpy()[0]) <= limits.dense_vertices
         self.width = width = lanes.lane_width(self.device)
         rows = padded_count(capacity)
         self.lanes, self.search = lanes.make_lanes(body, step, width), make_search(rows, self.device)
         self.matrix = make_dense_matrix(3 * rows if self.is_dense else CPU_WIDTH, self.device)
+        if self.is_dense:
+            shape = (body.volumes.shape[0], 3, rows)
+            self._rows = wp.zeros(shape, dtype=float, device=self.device)
+            self._columns = lanes.in_lanes(self._rows, width)
+            step.blocks = wp.zeros((shape[0], 9), dtype=wp.mat33, device=self.device)
         self._changes = wp.zeros_like(self.lanes.tensions)
-        self._no_points = no_point_forces(capacity, self.device)
+        self._no_points = make_point_forces(wp.zeros((1, capacity), dtype=float, device=self.device), 0, 1)
         self._points: PointForces | None = None
         self._record_launches()
         self._aim(self._no_points)
 
     def refresh(self) -> None:
         """Bring the gradients' lanes up to date after an edit."""
-        self._pack.launch()
+        for launch in self._refresh_launches:
+            launch.launch()
 
-    def add_residual(self, points: PointForces, guess: wp.array, earlier: wp.array) -> None:
-        """Add the forces on points to the residual.
+    def adding_residual(self, guess: wp.array, earlier: wp.array) -> Callable[[PointForces], None]:
+        """The function that adds forces on points to the residual; it only launches a kernel.
 
         Args:
-            points: The forces.
             guess: What the matrix is multiplied with in the first guess, one a vertex: velocities or displacements.
             earlier: What the velocity after the step lacks then of the damping's part, one a vertex [m/s].
         """
-        inputs = [guess, earlier, self.step, self.system, points, self.search]
-        self._launch_block(make_point_residual_kernel(self.width), inputs)
+        return self._with_points(add_point_residual, lambda points: [guess, earlier, self.step, self.system, points])
 
-    def add_product(self, points: PointForces, values: wp.array, product: wp.array) -> None:
-        """Add the product of the points' part of the matrix with a vertex field, after :meth:`add_residual`."""
-        self._launch_block(make_point_product_kernel(self.width), [values, self.system, points, self.search, product])
+    def adding_product(self, values: wp.array, product: wp.array) -> Callable[[PointForces], None]:
+        """The function that adds the product of the points' matrix with a field, once the residual was added.
+
+        Args:
+            values: The field, one a vertex.
+            product: Where the product is added.
+        """
+        return self._with_points(add_point_product, lambda points: [values, product, self.system, points])
+
+    def _with_points(self, kernel: wp.Kernel, inputs: Callable[[PointForces], list]) -> Callable[[PointForces], None]:
+        """The function that launches a kernel of one thread block with forces on points; the launch is kept."""
+        kept: list = [None, None]
+
+        def launch(points: PointForces) -> None:
+            if kept[0] is not points:
+                kept[:] = points, block_later(kernel, [*inputs(points), self.search], self.device)
+            kept[1].launch()
+
+        return launch
 
     def solve(self, points: PointForces | None) -> None:
         """Improve ``solution`` until the residual is small.
@@ -105,15 +133,14 @@ class LinearSolver:
         """Blocks of quadrature points."""
         return self.lanes.tensions.shape[1]
 
-    def _launch_block(self, kernel: wp.Kernel, inputs: list) -> None:
-        """One launch of one thread block."""
-        block_later(kernel, inputs, self.device).launch()
-
     def _record_launches(self) -> None:
         """Prepare the launches that do not depend on forces on points."""
         body, device, width, capacity = self.body, self.device, self.width, self.body.rest.shape[0]
         pack, shape = lanes.make_pack_kernel(width), (capacity, self._block_count)
-        self._pack = launch_later(pack, shape, [body, self.lanes], device)
+        self._refresh_launches = [launch_later(pack, shape, [body, self.lanes], device)]
+        if self.is_dense:
+            kernel, shape = make_column_kernel(width), (body.volumes.shape[0], self._columns.shape[2])
+            self._refresh_launches.append(launch_later(kernel, shape, [body, self._columns], device))
         self._expand = launch_later(expand_stiffness, body.volumes.shape[0], [self.step], device)
 
     def _aim(self, points: PointForces) -> None:
@@ -142,12 +169,11 @@ class LinearSolver:
             blocks = launch_later(make_block_kernel(width), capacity, [body, step, system, points, self.lanes], device)
             self._solve_launches = (blocks, solve)
             return
-        tiles = (-(-capacity // ROWS), -(-capacity // COLUMNS), 3)
+        tiles = (-(-capacity // ROWS), self._columns.shape[2], 9)
+        assembly = [body, step, self._columns, self._rows, self.matrix]
         self._solve_launches = (
-            launch_later(make_assembly_kernel(width), tiles, [body, step, self.lanes, self.matrix], device),
-            launch_later(
-                make_point_kernel(width), (capacity, -(-capacity // width)), [body, points, self.matrix], device
-            ),
+            launch_later(make_assembly_kernel(width), tiles, assembly, device),
+            launch_later(add_points, (capacity, -(-capacity // ROWS)), [body, points, self.matrix], device),
             block_later(make_factor_kernel(width), [body.vertex_count, self.matrix, matrix_lanes], device),
             solve,
         )

@@ -7,13 +7,26 @@ A point's force is f - S s - D v, with s its displacement and v its velocity aft
 before it. Through the weights it reaches the vertices: w^T f, and w^T S w in the matrix.
 """
 
-import functools
-
 import warp as wp
 
-from .lanes import lane_type, make_lane_sum
-
 wp.set_module_options({"enable_backward": False})
+
+
+Symmetric = wp.types.vector(length=8, dtype=wp.float32)
+"""A symmetric 3x3 matrix: xx, yy, zz, xy, yz, zx, and two zeros that fill a vector of a CPU."""
+
+
+@wp.func
+def packed(matrix: wp.mat33) -> Symmetric:
+    """The six entries of a symmetric matrix."""
+    return Symmetric(matrix[0, 0], matrix[1, 1], matrix[2, 2], matrix[0, 1], matrix[1, 2], matrix[2, 0], 0.0, 0.0)
+
+
+@wp.func
+def unpacked(entries: Symmetric) -> wp.mat33:
+    """The symmetric matrix of six entries."""
+    xy, yz, zx = entries[3], entries[4], entries[5]
+    return wp.mat33(entries[0], xy, zx, xy, entries[1], yz, zx, yz, entries[2])
 
 
 @wp.struct
@@ -34,48 +47,76 @@ class PointForces:
     """Symmetric stiffness, one a point [N/m]."""
     damping: wp.array[wp.mat33]
     """Symmetric damping, one a point [N s/m]."""
-    system: wp.array[wp.mat33]
+    system: wp.array[Symmetric]
     """Block of the system's matrix, one a touched point."""
-    product: wp.array[wp.vec3]
-    """Residual, or the block's product with a direction, one a touched point."""
+    product: wp.array[wp.vec4]
+    """Residual, or the block's product with a direction, one a touched point; the last component is 0."""
 
 
-def no_point_forces(vertex_capacity: int, device: wp.Device) -> PointForces:
-    """Forces on no point."""
+def make_point_forces(weights: wp.array, first_row: int, capacity: int) -> PointForces:
+    """Forces on no point yet.
+
+    Args:
+        weights: Weights, one a row and vertex.
+        first_row: Row of point 0.
+        capacity: Number of points.
+    """
     points = PointForces()
-    with wp.ScopedDevice(device):
-        points.weights = wp.zeros((1, vertex_capacity), dtype=float)
-        points.touched, points.count = (wp.zeros(1, dtype=int) for _ in range(2))
-        points.force, points.product = (wp.zeros(1, dtype=wp.vec3) for _ in range(2))
-        points.stiffness, points.damping, points.system = (wp.zeros(1, dtype=wp.mat33) for _ in range(3))
+    points.weights, points.first_row = weights, first_row
+    with wp.ScopedDevice(weights.device):
+        points.touched, points.count = wp.zeros(capacity, dtype=int), wp.zeros(1, dtype=int)
+        points.force = wp.zeros(capacity, dtype=wp.vec3)
+        points.stiffness, points.damping = (wp.zeros(capacity, dtype=wp.mat33) for _ in range(2))
+        points.system, points.product = wp.zeros(capacity, dtype=Symmetric), wp.zeros(capacity, dtype=wp.vec4)
     return points
 
 
-@functools.cache
-def make_point_value(width: int) -> wp.Function:
-    """The function that finds a vertex field at a touched point."""
-    lane = lane_type(width)
-    lane_sum = make_lane_sum(width)
+@wp.func
+def point_value(slot: int, values: wp.array[wp.vec4], vertex_count: int, points: PointForces) -> wp.vec3:
+    """A vertex field at a touched point, in four sums that do not wait for each other."""
+    row = points.first_row + points.touched[slot]
+    v0, v1, v2, v3 = wp.vec4(), wp.vec4(), wp.vec4(), wp.vec4()
+    fours = vertex_count / 4
+    for four in range(fours):
+        j = 4 * four
+        v0 += points.weights[row, j] * values[j]
+        v1 += points.weights[row, j + 1] * values[j + 1]
+        v2 += points.weights[row, j + 2] * values[j + 2]
+        v3 += points.weights[row, j + 3] * values[j + 3]
+    for j in range(4 * fours, vertex_count):
+        v0 += points.weights[row, j] * values[j]
+    total = (v0 + v1) + (v2 + v3)
+    return wp.vec3(total[0], total[1], total[2])
 
-    @wp.func
-    def point_value(slot: int, values: wp.array2d(dtype=float), vertex_count: int, points: PointForces) -> wp.vec3:
-        row = points.first_row + points.touched[slot]
-        x, y, z = lane(), lane(), lane()
-        whole = vertex_count / wp.static(width)
-        for block in range(whole):
-            weight, vx, vy, vz = lane(), lane(), lane(), lane()
-            for s in range(wp.static(width)):
-                j = wp.static(width) * block + s
-                weight[s] = points.weights[row, j]
-                vx[s] = values[0, j]
-                vy[s] = values[1, j]
-                vz[s] = values[2, j]
-            x += wp.cw_mul(weight, vx)
-            y += wp.cw_mul(weight, vy)
-            z += wp.cw_mul(weight, vz)
-        total = wp.vec3(lane_sum(x), lane_sum(y), lane_sum(z))
-        for j in range(wp.static(width) * whole, vertex_count):
-            total += points.weights[row, j] * wp.vec3(values[0, j], values[1, j], values[2, j])
-        return total
 
-    return point_value
+@wp.func
+def pull_back(thread: int, vertex_count: int, points: PointForces, pulled: wp.array[wp.vec4]):
+    """Sum what the touched points pull; all threads of the block call it."""
+    last = points.weights.shape[1] - 1
+    for four in range(thread, (vertex_count + 3) / 4, wp.block_dim()):
+        j = 4 * four
+        second, third, fourth = wp.min(j + 1, last), wp.min(j + 2, last), wp.min(j + 3, last)
+        v0, v1, v2, v3 = wp.vec4(), wp.vec4(), wp.vec4(), wp.vec4()
+        for slot in range(points.count[0]):
+            row = points.first_row + points.touched[slot]
+            pull = points.product[slot]
+            v0 += points.weights[row, j] * pull
+            v1 += points.weights[row, second] * pull
+            v2 += points.weights[row, third] * pull
+            v3 += points.weights[row, fourth] * pull
+        pulled[j] = v0
+        pulled[j + 1] = v1
+        pulled[j + 2] = v2
+        pulled[j + 3] = v3
+
+
+@wp.func
+def as_four(v: wp.vec3) -> wp.vec4:
+    """A vector with a zero after it."""
+    return wp.vec4(v[0], v[1], v[2], 0.0)
+
+
+@wp.func
+def as_three(v: wp.vec4) -> wp.vec3:
+    """The first three components."""
+    return wp.vec3(v[0], v[1], v[2])

@@ -12,15 +12,13 @@ import functools
 import warp as wp
 
 from ..arrays import ELASTIC_STIFFNESS, BodyArrays, StepArrays
-from .lanes import entry, lane_struct, lane_type, make_lane_sum
-from .point_forces import PointForces
+from .lanes import lane_type
+from .point_forces import PointForces, Symmetric, unpacked
 
 wp.set_module_options({"enable_backward": False})
 
-ROWS = wp.constant(4)
+ROWS = wp.constant(8)
 """Vertices whose rows one thread assembles."""
-COLUMNS = wp.constant(16)
-"""Vertices whose columns it assembles."""
 
 
 @wp.struct
@@ -62,111 +60,126 @@ def put_entry(i: int, j: int, a: int, b: int, elastic: float, body: BodyArrays, 
 
 
 @functools.cache
-def make_assembly_kernel(width: int) -> wp.Kernel:
-    """The kernel that assembles all but the forces on points; a thread a few rows, columns and one component."""
-    lane, Lanes = lane_type(width), lane_struct(width)
-    lane_sum = make_lane_sum(width)
+def make_column_kernel(width: int) -> wp.Kernel:
+    """The kernel that lays the gradients out with vertices in lanes, after an edit; a thread a point and block."""
+    lane = lane_type(width)
 
     @wp.kernel(enable_backward=False, module="unique")
-    def assemble_matrix(body: BodyArrays, step: StepArrays, lanes: Lanes, matrix: DenseMatrix):
-        rows, columns, b = wp.tid()
-        i = ROWS * rows
-        count = body.vertex_count[0]
-        if matrix.stale[0] == 0 or i >= count:
+    def pack_columns(body: BodyArrays, columns: wp.array3d(dtype=lane)):
+        q, block = wp.tid()
+        x, y, z = lane(), lane(), lane()
+        for s in range(wp.static(width)):
+            j = wp.static(width) * block + s
+            if j < body.vertex_count[0]:
+                gradient = body.gradients[q, j]
+                x[s] = gradient[0]
+                y[s] = gradient[1]
+                z[s] = gradient[2]
+        columns[q, 0, block] = x
+        columns[q, 1, block] = y
+        columns[q, 2, block] = z
+
+    return pack_columns
+
+
+@functools.cache
+def make_assembly_kernel(width: int) -> wp.Kernel:
+    """The kernel that assembles all but the forces on points.
+
+    A thread has the rows of eight vertices, the columns of a lane vector and one pair of components.
+    """
+    lane = lane_type(width)
+
+    @wp.func
+    def put_row(i: int, block: int, a: int, b: int, row: lane, body: BodyArrays, step: StepArrays, matrix: DenseMatrix):
+        for s in range(wp.static(width)):
+            put_entry(i, wp.static(width) * block + s, a, b, row[s], body, step, matrix)
+
+    @wp.kernel(enable_backward=False, module="unique")
+    def assemble_matrix(
+        body: BodyArrays,
+        step: StepArrays,
+        columns: wp.array3d(dtype=lane),
+        rows: wp.array3d(dtype=float),
+        matrix: DenseMatrix,
+    ):
+        tile, block, pair = wp.tid()
+        i = ROWS * tile
+        if matrix.stale[0] == 0 or i >= body.vertex_count[0] or wp.static(width) * block >= i + ROWS:
             return
-        for j in range(COLUMNS * columns, wp.min(wp.min(COLUMNS * (columns + 1), count), i + ROWS)):
-            x0, y0, z0 = lane(), lane(), lane()
-            x1, y1, z1 = lane(), lane(), lane()
-            x2, y2, z2 = lane(), lane(), lane()
-            x3, y3, z3 = lane(), lane(), lane()
-            second, third, fourth = wp.min(i + 1, count - 1), wp.min(i + 2, count - 1), wp.min(i + 3, count - 1)
-            for k in range(lanes.tensions.shape[1]):
-                gx, gy, gz = lanes.gradients[j, 0, k], lanes.gradients[j, 1, k], lanes.gradients[j, 2, k]
+        r0, r1, r2, r3 = lane(), lane(), lane(), lane()
+        r4, r5, r6, r7 = lane(), lane(), lane(), lane()
+        for q in range(body.volumes.shape[0]):
+            if body.volumes[q] != 0.0:
+                x, y, z = lane(columns[q, 0, block]), lane(columns[q, 1, block]), lane(columns[q, 2, block])
+                K = step.blocks[q, pair]
                 for c in range(3):
-                    u0, u1 = lane(lanes.gradients[i, c, k]), lane(lanes.gradients[second, c, k])
-                    u2, u3 = lane(lanes.gradients[third, c, k]), lane(lanes.gradients[fourth, c, k])
-                    t = wp.cw_mul(lanes.stiffness[entry(c, 3 * b), k], gx)
-                    t += wp.cw_mul(lanes.stiffness[entry(c, 3 * b + 1), k], gy)
-                    t += wp.cw_mul(lanes.stiffness[entry(c, 3 * b + 2), k], gz)
-                    x0 += wp.cw_mul(u0, t)
-                    x1 += wp.cw_mul(u1, t)
-                    x2 += wp.cw_mul(u2, t)
-                    x3 += wp.cw_mul(u3, t)
-                    t = wp.cw_mul(lanes.stiffness[entry(3 + c, 3 * b), k], gx)
-                    t += wp.cw_mul(lanes.stiffness[entry(3 + c, 3 * b + 1), k], gy)
-                    t += wp.cw_mul(lanes.stiffness[entry(3 + c, 3 * b + 2), k], gz)
-                    y0 += wp.cw_mul(u0, t)
-                    y1 += wp.cw_mul(u1, t)
-                    y2 += wp.cw_mul(u2, t)
-                    y3 += wp.cw_mul(u3, t)
-                    t = wp.cw_mul(lanes.stiffness[entry(6 + c, 3 * b), k], gx)
-                    t += wp.cw_mul(lanes.stiffness[entry(6 + c, 3 * b + 1), k], gy)
-                    t += wp.cw_mul(lanes.stiffness[entry(6 + c, 3 * b + 2), k], gz)
-                    z0 += wp.cw_mul(u0, t)
-                    z1 += wp.cw_mul(u1, t)
-                    z2 += wp.cw_mul(u2, t)
-                    z3 += wp.cw_mul(u3, t)
-            put_entry(i, j, 0, b, lane_sum(x0), body, step, matrix)
-            put_entry(i, j, 1, b, lane_sum(y0), body, step, matrix)
-            put_entry(i, j, 2, b, lane_sum(z0), body, step, matrix)
-            put_entry(i + 1, j, 0, b, lane_sum(x1), body, step, matrix)
-            put_entry(i + 1, j, 1, b, lane_sum(y1), body, step, matrix)
-            put_entry(i + 1, j, 2, b, lane_sum(z1), body, step, matrix)
-            put_entry(i + 2, j, 0, b, lane_sum(x2), body, step, matrix)
-            put_entry(i + 2, j, 1, b, lane_sum(y2), body, step, matrix)
-            put_entry(i + 2, j, 2, b, lane_sum(z2), body, step, matrix)
-            put_entry(i + 3, j, 0, b, lane_sum(x3), body, step, matrix)
-            put_entry(i + 3, j, 1, b, lane_sum(y3), body, step, matrix)
-            put_entry(i + 3, j, 2, b, lane_sum(z3), body, step, matrix)
+                    t = K[c, 0] * x + K[c, 1] * y + K[c, 2] * z
+                    r0 += rows[q, c, i] * t
+                    r1 += rows[q, c, i + 1] * t
+                    r2 += rows[q, c, i + 2] * t
+                    r3 += rows[q, c, i + 3] * t
+                    r4 += rows[q, c, i + 4] * t
+                    r5 += rows[q, c, i + 5] * t
+                    r6 += rows[q, c, i + 6] * t
+                    r7 += rows[q, c, i + 7] * t
+        a, b = pair / 3, pair % 3
+        put_row(i, block, a, b, r0, body, step, matrix)
+        put_row(i + 1, block, a, b, r1, body, step, matrix)
+        put_row(i + 2, block, a, b, r2, body, step, matrix)
+        put_row(i + 3, block, a, b, r3, body, step, matrix)
+        put_row(i + 4, block, a, b, r4, body, step, matrix)
+        put_row(i + 5, block, a, b, r5, body, step, matrix)
+        put_row(i + 6, block, a, b, r6, body, step, matrix)
+        put_row(i + 7, block, a, b, r7, body, step, matrix)
 
     return assemble_matrix
 
 
-@functools.cache
-def make_point_kernel(width: int) -> wp.Kernel:
-    """The kernel that adds the forces on points to the matrix; a thread a vertex and a block of others."""
-    lane = lane_type(width)
-
-    @wp.kernel(enable_backward=False, module="unique")
-    def add_points(body: BodyArrays, points: PointForces, matrix: DenseMatrix):
-        i, block = wp.tid()
-        start = wp.static(width) * block
-        if matrix.stale[0] == 0 or i >= body.vertex_count[0] or start > i or points.count[0] == 0:
-            return
-        if body.fixed[i] != 0:
-            return
-        xx, yy, zz = lane(), lane(), lane()
-        xy, yz, zx = lane(), lane(), lane()
-        columns = points.weights.shape[1]
-        for slot in range(points.count[0]):
-            row = points.first_row + points.touched[slot]
-            own = points.weights[row, i]
-            if own != 0.0:
-                weight = lane()
-                for s in range(wp.static(width)):
-                    if start + s < columns:
-                        weight[s] = points.weights[row, start + s]
-                weight = own * weight
-                S = points.system[slot]
-                xx += S[0, 0] * weight
-                yy += S[1, 1] * weight
-                zz += S[2, 2] * weight
-                xy += S[0, 1] * weight
-                yz += S[1, 2] * weight
-                zx += S[2, 0] * weight
-        for s in range(wp.static(width)):
-            j = start + s
-            if j <= i:
-                if body.fixed[j] == 0:
-                    add_block(i, j, xx[s], yy[s], zz[s], xy[s], yz[s], zx[s], matrix)
-
-    return add_points
+@wp.kernel(enable_backward=False)
+def add_points(body: BodyArrays, points: PointForces, matrix: DenseMatrix):
+    """Add the forces on points to the matrix; a thread a vertex and eight others."""
+    i, block = wp.tid()
+    j = 8 * block
+    count = body.vertex_count[0]
+    if matrix.stale[0] == 0 or i >= count or j > i or points.count[0] == 0:
+        return
+    if body.fixed[i] != 0:
+        return
+    b0, b1, b2, b3 = Symmetric(), Symmetric(), Symmetric(), Symmetric()
+    b4, b5, b6, b7 = Symmetric(), Symmetric(), Symmetric(), Symmetric()
+    last = points.weights.shape[1] - 1
+    j1, j2, j3, j4 = wp.min(j + 1, last), wp.min(j + 2, last), wp.min(j + 3, last), wp.min(j + 4, last)
+    j5, j6, j7 = wp.min(j + 5, last), wp.min(j + 6, last), wp.min(j + 7, last)
+    for slot in range(points.count[0]):
+        row = points.first_row + points.touched[slot]
+        own = points.weights[row, i]
+        if own != 0.0:
+            S = own * points.system[slot]
+            b0 += points.weights[row, j] * S
+            b1 += points.weights[row, j1] * S
+            b2 += points.weights[row, j2] * S
+            b3 += points.weights[row, j3] * S
+            b4 += points.weights[row, j4] * S
+            b5 += points.weights[row, j5] * S
+            b6 += points.weights[row, j6] * S
+            b7 += points.weights[row, j7] * S
+    add_block(i, j, b0, body, matrix)
+    add_block(i, j + 1, b1, body, matrix)
+    add_block(i, j + 2, b2, body, matrix)
+    add_block(i, j + 3, b3, body, matrix)
+    add_block(i, j + 4, b4, body, matrix)
+    add_block(i, j + 5, b5, body, matrix)
+    add_block(i, j + 6, b6, body, matrix)
+    add_block(i, j + 7, b7, body, matrix)
 
 
 @wp.func
-def add_block(i: int, j: int, xx: float, yy: float, zz: float, xy: float, yz: float, zx: float, matrix: DenseMatrix):
-    """Add a symmetric 3x3 block and its mirror image."""
-    block = wp.mat33(xx, xy, zx, xy, yy, yz, zx, yz, zz)
+def add_block(i: int, j: int, symmetric: Symmetric, body: BodyArrays, matrix: DenseMatrix):
+    """Add a block and its mirror image, unless it is above the diagonal or of a fixed vertex."""
+    if j > i or body.fixed[j] != 0:
+        return
+    block = unpacked(symmetric)
     for a in range(3):
         for b in range(3):
             r, c = 3 * i + a, 3 * j + b

@@ -6,7 +6,7 @@
 Of all rigid motions of the shape that a piece has, that of the least incremental potential: the linear system, which
 holds for small rotations only, is left with the change of shape. So rotation costs no iterations and loses no angular
 momentum, however stiff the body. A piece that is held at a point or along a line turns about it; one that is held at
-more points stays. In the plane it turns about the normal.
+more points stays, or goes where one of them is driven. In the plane it turns about the normal.
 
 The least-squares rotation is the minimum of -A : R with A = sum (M target + impulse) (x) place; Newton's method on R
 starts from the identity, so that a body at rest stays where it is to the bit.
@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import warp as wp
 
-from ..arrays import BodyArrays
+from ..arrays import DRIVEN, BodyArrays
 from .stage_arrays import PieceArrays, StageArrays
 
 wp.set_module_options({"enable_backward": False})
@@ -157,8 +157,11 @@ def fit_motions(body: BodyArrays, stage: StageArrays, pieces: PieceArrays):
     shape, change = wp.mat33d(), wp.mat33d()
     total = wp.vec3d()
     center = pieces.center[p]
+    driven = wp.vec3d()
     for i in range(body.vertex_count[0]):
         if body.piece[i] == p:
+            if body.fixed[i] == DRIVEN:
+                driven = stage.target[i] - stage.reached[i]
             place = place_of(i, stage) - center
             shape += wp.outer(stage.inertia[i], place)
             change += wp.outer(stage.momentum[i], place)
@@ -172,7 +175,7 @@ def fit_motions(body: BodyArrays, stage: StageArrays, pieces: PieceArrays):
             if wp.length(turn) < _SMALL:
                 break
     pieces.rotation[p] = R
-    pieces.shift[p] = wp.vec3d()
+    pieces.shift[p] = driven
     if pieces.freedom[p][0] != 0:
         pieces.shift[p] = total / pieces.mass[p]
 
@@ -186,5 +189,7 @@ def move_rigidly(body: BodyArrays, stage: StageArrays, pieces: PieceArrays):
         p = body.piece[i]
         place = place_of(i, stage) - pieces.center[p]
         guess += pieces.shift[p] + (pieces.rotation[p] - wp.identity(3, dtype=wp.float64)) * place
+    if i < body.vertex_count[0] and body.fixed[i] == DRIVEN:
+        guess = stage.target[i]
     stage.guess[i] = guess
     stage.moved[i] = guess

@@ -36,7 +36,7 @@ class StageArrays:
     start: wp.array[wp.vec3]
     """Positions at the start of the step [m]."""
     velocity: wp.array[wp.vec3d]
-    """Velocities at the start of the step, zero of fixed vertices [m/s]."""
+    """Velocities at the start of the step, zero of held vertices [m/s]."""
     row_mass: wp.array[wp.float64]
     """Sums of the mass matrix's rows, free of their rounding [kg]."""
     reached: wp.array[wp.vec3d]

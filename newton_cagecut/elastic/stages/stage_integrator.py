@@ -83,15 +83,14 @@ class StageIntegrator(ImplicitIntegrator):
 
     def _improve(self, points: PointForces | None) -> None:
         """One iteration of Newton's method."""
-        stage, solver = self.stage, self.solver
         self._inertial_residual.launch()
         if points is not None:
-            solver.add_residual(points, stage.moved_single, stage.earlier_velocity)
+            self._add_point_residual(points)
         self._add_elastic_residual.launch()
         self._solve(points)
         self._multiply_inertia.launch()
         if points is not None:
-            solver.add_product(points, self.system.solution, stage.product)
+            self._add_point_product(points)
         self.line_search.launch()
         self._take_solution.launch()
 
@@ -135,6 +134,8 @@ class StageIntegrator(ImplicitIntegrator):
             for factors in scheme
         )
         everything = [body, step, stage, system]
+        self._add_point_residual = self.solver.adding_residual(stage.moved_single, stage.earlier_velocity)
+        self._add_point_product = self.solver.adding_product(system.solution, stage.product)
         self._show_moved = self._per_vertex(stage_kernels.show_moved, everything)
         self._inertial_residual = self._per_vertex(stage_kernels.find_inertial_residual, everything)
         self._multiply_inertia = self._per_vertex(stage_kernels.multiply_inertia, everything)

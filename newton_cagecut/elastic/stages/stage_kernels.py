@@ -10,9 +10,11 @@ import warp as wp
 from ..arrays import (
     DAMPING,
     DAMPING_SHARE,
+    DRIVEN,
     ELASTIC_FORCE,
     ELASTIC_STIFFNESS,
     FORCE,
+    HELD,
     STAGE_TIME,
     START_SHARE,
     STIFFNESS,
@@ -71,7 +73,7 @@ def begin_stages(
             wp.atomic_max(record.reason, 0, BAD_START)
         elif not (is_finite(gravity[0]) and is_finite(forces[i])):
             wp.atomic_max(record.reason, 0, BAD_FORCE)
-        if body.fixed[i] == 0:
+        if body.fixed[i] != HELD:
             velocity = confined(wp.vec3d(velocities[i]), body)
         for j in range(body.vertex_count[0]):
             row_mass += wp.float64(body.mass[i, j])
@@ -204,8 +206,11 @@ def end_stages(
     i = wp.tid()
     position, velocity = wp.vec3(stage.start[i]), wp.vec3(velocities[i])
     if i < body.vertex_count[0]:
-        if body.fixed[i] != 0:
+        if body.fixed[i] == HELD:
             velocity = wp.vec3()
+        elif body.fixed[i] == DRIVEN:
+            velocity = wp.vec3(stage.velocity[i])
+            position = wp.vec3(wp.vec3d(position) + stage.moved[i])
         else:
             moved = stage.moved[i]
             velocity = wp.vec3(confined(moved / step.scales[STAGE_TIME] - wp.vec3d(stage.earlier_velocity[i]), body))

@@ -64,6 +64,8 @@ def read_container(path: str | os.PathLike) -> tuple[dict, dict[str, np.ndarray]
         OSError: There is no such file, or it cannot be read.
         ValueError: It is no such file, or it was cut short or damaged.
     """
+    if not Path(path).exists():
+        raise FileNotFoundError(f"no such file: {os.fspath(path)}; save() writes one")
     with Path(path).open("rb") as file:
         magic, digest = file.read(len(_MAGIC)), file.read(_DIGEST_SIZE)
         if magic != _MAGIC:

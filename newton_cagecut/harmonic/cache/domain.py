@@ -9,8 +9,9 @@ import numpy as np
 import warp as wp
 
 from ...cage import Cage, CageEdit
+from ...geometry import as_choice, as_instance
 from ..faces.face_tables import FaceTables
-from ..options import DISTANCES, QUADS, require_choice
+from ..options import DISTANCES, QUADS, as_device
 from ..walls.frame import UnitFrame
 from ..walls.grid import CandidateGrid
 from ..walls.walls import Walls
@@ -45,14 +46,14 @@ class Domain:
         grid_resolution: int | None = None,
         walls: Walls | None = None,
     ) -> None:
-        require_choice("distance", distance, DISTANCES)
-        require_choice("quads", quads, QUADS)
+        as_choice(distance, DISTANCES, "distance")
+        as_choice(quads, QUADS, "quads")
         self.now = DomainState.of(
             cage,
             quads=quads,
             distance=distance,
             grid_resolution=grid_resolution,
-            device=wp.get_device(device),
+            device=as_device(device),
             walls=walls,
         )
 
@@ -135,9 +136,11 @@ def domain_of(cage: Cage | Domain, *, quads: str | None, distance: str | None, d
         device: Likewise.
 
     Raises:
+        TypeError: It is neither.
         ValueError: The domain has another one of them.
     """
-    given = {"quads": quads, "distance": distance, "device": None if device is None else wp.get_device(device)}
+    as_instance(cage, (Cage, Domain), "cage", hint="the cage comes first: HarmonicCoordinates(cage, points)")
+    given = {"quads": quads, "distance": distance, "device": None if device is None else as_device(device)}
     given = {name: value for name, value in given.items() if value is not None}
     if not isinstance(cage, Domain):
         return Domain(cage, **given)

@@ -91,6 +91,10 @@ class DomainState:
         """What the fit leaves over on the faces, evaluated when it is first asked for."""
         return build_residuals(self.fit, self.frame, self.device)
 
+    def forgetful(self) -> DomainState:
+        """This state, with a fit that is made without anything that earlier ones have left."""
+        return replace(self, memory=FitMemory(self.cage.dimension, self.device))
+
     def pieces_of(self, points: np.ndarray) -> np.ndarray:
         """Piece of the cage that each rest position lies in; all 0 while there is one. Shape (n,)."""
         if self.cage.piece_count == 1:

@@ -12,6 +12,7 @@ import warp as wp
 
 from ..journal import Journal
 from ..launch import launch, launch_blocks
+from ..resolve.fitted_rows import FittedRows
 from ..stats import UpdateStats
 from ..walks.marking import ON_FACE, RESUME, REWALK, gather, make_mark_kernel, meet_first_spheres, unmark_walks
 from ..walks.work import Work
@@ -120,6 +121,8 @@ def run_again(cache: WalkCache, state: DomainState, stats: UpdateStats, journal:
     if records is not None:
         cache.records = records.copied() if len(removed) else records.fresh()
     stages = cache.stages(state, stats)
+    if cache.options.correction == "fitted":
+        stages.state, stages.rows = state.forgetful(), FittedRows()
     stats.rewalked = stats.walk_count
     if len(removed):
         stages.run_points(np.setdiff1d(np.arange(cache.point_count), removed))

@@ -11,6 +11,7 @@ import warp as wp
 
 from ...cage import Cage
 from ...elastic import Energy, Material
+from ...geometry import as_points, check_finite
 from ...harmonic import HarmonicCoordinates
 from ...surface import Surface
 from .body_pieces import BodyPiece, body_pieces
@@ -111,5 +112,11 @@ class CageBody:
 
         Args:
             points: The points [m], shape (n, dimension).
+
+        Raises:
+            TypeError: They are not numbers.
+            ValueError: They have another shape or are not finite.
         """
+        points = as_points(points, "points", rows="n", widths=(self.cage.dimension,))
+        check_finite(points, "points", row="point")
         return self._simulated.to_world(points)

@@ -12,59 +12,7 @@ import numpy as np
 from ...cage import Cage
 from ...elastic import Material
 from ...surface import Surface
-
-
-@dataclass(frozen=True, kw_only=True)
-class Capacity:
-    """Room that a body reserves for cuts. Arrays never grow afterwards, so captured CUDA graphs stay valid.
-
-    Args:
-        vertices: Vertices of the cage.
-        surface_points: Points of the embedded surface, those along seams counting as one.
-        surface_triangles: Triangles of the embedded surface, caps included.
-    """
-
-    vertices: int
-    surface_points: int
-    surface_triangles: int
-
-    @classmethod
-    def for_cuts(cls, cage: Cage, surface: Surface) -> Capacity:
-        """Room for several cuts through all of a body."""
-        point_count, triangle_count = surface.site_count, surface.triangle_count
-        spare_points = 1024 + point_count // 2
-        return cls(
-            vertices=4 * cage.vertex_count + 64,
-            surface_points=point_count + spare_points,
-            surface_triangles=triangle_count + 4 * spare_points,
-        )
-
-    @classmethod
-    def without_cuts(cls, cage: Cage, surface: Surface) -> Capacity:
-        """No room to spare."""
-        return cls(
-            vertices=cage.vertex_count,
-            surface_points=surface.site_count,
-            surface_triangles=surface.triangle_count,
-        )
-
-    def require(self, cage: Cage, surface: Surface) -> None:
-        """Refuse a cage and a surface that do not fit.
-
-        Raises:
-            ValueError: Something does not fit; the message names the capacity to raise.
-        """
-        needed = {
-            "vertices": cage.vertex_count,
-            "surface_points": surface.site_count,
-            "surface_triangles": surface.triangle_count,
-        }
-        for name, count in needed.items():
-            if count > getattr(self, name):
-                raise ValueError(
-                    f"{count} {name.replace('_', ' ')} are needed, room was reserved for {getattr(self, name)}: "
-                    f"raise capacity={name}=... in add_cage_body"
-                )
+from .capacity import Capacity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,6 +35,7 @@ class BodyDefinition:
         options: Further options of the harmonic coordinates.
         edit: Number of the edit that it is as of, 0 before the first; undoing one goes back to the number before.
         last_edit: Highest number that an edit has had.
+        uncut: What it was before its first cut; None if it was never cut.
     """
 
     label: str
@@ -104,3 +53,9 @@ class BodyDefinition:
     options: dict[str, object]
     edit: int = 0
     last_edit: int = 0
+    uncut: BodyDefinition | None = None
+
+    @property
+    def before_cuts(self) -> BodyDefinition:
+        """What it was before its first cut."""
+        return self.uncut or self

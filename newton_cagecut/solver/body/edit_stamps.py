@@ -11,10 +11,13 @@ where it is, in a captured replay too; the next call that is not captured says s
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Sequence
 
 import newton
 import warp as wp
+
+from ...geometry import as_instance
 
 wp.set_module_options({"enable_backward": False})
 
@@ -62,10 +65,46 @@ class EditStamps:
         """Number of each body's present edit, shape (body_count,), int32."""
         self.is_current = wp.ones(len(labels), dtype=wp.int32, device=self.device)
         """Whether the state of the last step was of that edit, shape (body_count,), int32."""
-        self._labels = tuple(labels)
+        self.labels = self._labels = tuple(labels)
+        self._particle_count = model.particle_count
+        self._known: weakref.WeakKeyDictionary[newton.State, tuple] = weakref.WeakKeyDictionary()
         self._missed = wp.zeros(len(labels), dtype=wp.int32, device=self.device)
         self._seen = wp.zeros(len(labels), dtype=wp.int32, device="cpu", pinned=self.device.is_cuda)
         self._seen_counts = self._seen.numpy()  # a view, of host memory on every device
+
+    def require_own(self, state: newton.State, what: str) -> None:
+        """Refuse what is no state of the model, by its arrays; those that were looked at once are known again.
+
+        Args:
+            state: What was passed.
+            what: What it is, for the error.
+
+        Raises:
+            TypeError: It is no state, or one without particles.
+            ValueError: Its arrays are of another size or on another device than the model's.
+        """
+        as_instance(state, newton.State, what, hint="model.state() makes one")
+        arrays = (state.particle_q, state.particle_qd, state.particle_f, getattr(state, "cagecut", None))
+        known = self._known.get(state)
+        if known is not None and all(array is other for array, other in zip(arrays, known, strict=True)):
+            return
+        for name, array in zip(("particle_q", "particle_qd", "particle_f"), arrays, strict=False):
+            if array is None:
+                raise TypeError(f"{what} must be a state with particles, but {what}.{name} is None")
+            if array.shape != (self._particle_count,):
+                raise ValueError(
+                    f"{what}.{name} has the shape {array.shape}, the model has {self._particle_count} particles; pass "
+                    "states of the solver's own model, from model.state()"
+                )
+            if array.device != self.device:
+                raise ValueError(f"{what}.{name} is on {array.device}, the model on {self.device}; pass its own states")
+        edits = state_edits(state, what)
+        if edits.shape != self.edits.shape:
+            raise ValueError(
+                f"{what} is of a model with {edits.size} cage bodies, the solver's has {self.edits.size}; pass states "
+                "of the solver's own model, from model.state()"
+            )
+        self._known[state] = arrays
 
     def compare(self, state: newton.State) -> None:
         """Find which bodies a step may move, with kernels alone; outside of a capture raise where it may not.
@@ -112,6 +151,7 @@ class EditStamps:
             TypeError: The state is none of the model's.
             ValueError: The row is of another edit.
         """
+        self.require_own(state, what)
         found, edit = (int(array.numpy()[row]) for array in (state_edits(state), self.edits))
         if found != edit:
             raise ValueError(
@@ -126,11 +166,12 @@ _WHAT_TO_DO = (
 )
 
 
-def state_edits(state: newton.State) -> wp.array:
+def state_edits(state: newton.State, what: str = "the state") -> wp.array:
     """The edit that each body's row of a state is of, shape (body_count,), int32.
 
     Args:
         state: A state of a model with cage bodies.
+        what: What it is, for the error.
 
     Raises:
         TypeError: It is none.
@@ -138,6 +179,6 @@ def state_edits(state: newton.State) -> wp.array:
     rows = getattr(state, "cagecut", None)
     if rows is None:
         raise TypeError(
-            f"a state of a model with cage bodies is needed, from model.state(); got {type(state).__name__}"
+            f"{what} must be a state of a model with cage bodies, from model.state(); got {type(state).__name__}"
         )
     return rows.edit

@@ -37,26 +37,55 @@ def make_surface_rows(
     return rows
 
 
-@wp.func
-def at_surface_point(i: int, values: wp.array[wp.vec3], rows: SurfaceRows) -> wp.vec3:
-    """A field of vertex values at a surface point."""
-    total = wp.vec3()
-    for j in range(rows.vertex_count[0]):
-        total += rows.weights[rows.first_row + i, j] * values[j]
-    return total
+@wp.kernel(enable_backward=False)
+def embed(vertices: wp.array[wp.vec3], rows: SurfaceRows, points: wp.array[wp.vec3]):
+    """Sum a vertex field with the weights of each surface point."""
+    i = wp.tid()
+    if i < rows.point_count[0]:
+        total = wp.vec3()
+        for j in range(rows.vertex_count[0]):
+            total += rows.weights[rows.first_row + i, j] * vertices[j]
+        points[i] = total
+
+
+Motion = wp.types.vector(length=8, dtype=wp.float32)
+"""Position and velocity of a vertex, each with a zero after it: one vector of a CPU."""
 
 
 @wp.kernel(enable_backward=False)
-def embed(
-    enabled: wp.array[wp.int32],
-    vertices: wp.array[wp.vec3],
-    rows: SurfaceRows,
-    points: wp.array[wp.vec3],
-):
-    """Sum a vertex field with the weights of each surface point."""
+def join_motion(positions: wp.array[wp.vec3], velocities: wp.array[wp.vec3], motion: wp.array[Motion]):
+    """Put position and velocity of each vertex together."""
     i = wp.tid()
-    if i < rows.point_count[0] and enabled[0] != 0:
-        points[i] = at_surface_point(i, vertices, rows)
+    x, v = positions[i], velocities[i]
+    motion[i] = Motion(x[0], x[1], x[2], 0.0, v[0], v[1], v[2], 0.0)
+
+
+@wp.kernel(enable_backward=False)
+def embed_motion(
+    enabled: wp.array[wp.int32],
+    motion: wp.array[Motion],
+    rows: SurfaceRows,
+    positions: wp.array[wp.vec3],
+    velocities: wp.array[wp.vec3],
+):
+    """Positions and velocities of the surface points, in four sums that do not wait for each other."""
+    i = wp.tid()
+    if i >= rows.point_count[0] or enabled[0] == 0:
+        return
+    row, count = rows.first_row + i, rows.vertex_count[0]
+    m0, m1, m2, m3 = Motion(), Motion(), Motion(), Motion()
+    fours = count / 4
+    for four in range(fours):
+        j = 4 * four
+        m0 += rows.weights[row, j] * motion[j]
+        m1 += rows.weights[row, j + 1] * motion[j + 1]
+        m2 += rows.weights[row, j + 2] * motion[j + 2]
+        m3 += rows.weights[row, j + 3] * motion[j + 3]
+    for j in range(4 * fours, count):
+        m0 += rows.weights[row, j] * motion[j]
+    total = (m0 + m1) + (m2 + m3)
+    positions[i] = wp.vec3(total[0], total[1], total[2])
+    velocities[i] = wp.vec3(total[4], total[5], total[6])
 
 
 @wp.kernel(enable_backward=False)

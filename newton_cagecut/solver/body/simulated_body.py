@@ -15,14 +15,15 @@ import warp as wp
 
 from ...cage import Cage
 from ...elastic import Energy, ReducedSystem
-from ...harmonic import HarmonicCoordinates, Journal
+from ...harmonic import CoordinatesSnapshot, HarmonicCoordinates, Journal
 from ...surface import Surface
 from ..config import Config
 from ..contact.contact_term import ContactTerm
+from ..live.vertex_motion import finish_vertices, place_vertices, prescribe_motion
 from .body_quadrature import SPARE_COUNT, BodyQuadrature
 from .definition import BodyDefinition
 from .edit_stamps import EditStamps, hold_rows, state_edits
-from .embedding import SeamPoints, embed, make_surface_rows
+from .embedding import Motion, SeamPoints, embed, embed_motion, join_motion, make_surface_rows
 from .rest_frame import RestFrame
 
 _NUDGE = 1.0e-6
@@ -55,16 +56,18 @@ class SimulatedBody:
         definition = self.definition
         vertex_start = int(model.cagecut.vertex_start.numpy()[row])
         surface_start = int(model.cagecut.surface_start.numpy()[row])
-        self.label = definition.label
+        self.label = stamps.labels[row]
         self.capacity = definition.capacity
         self.surface: Surface = definition.surface
         self.vertices = slice(vertex_start, vertex_start + self.capacity.vertices)
         self.surface_particles = slice(surface_start, surface_start + self.capacity.surface_points)
         self.has_contact = surface_start >= 0
-        self._frame = RestFrame.of_particles(definition.cage.vertices, model.particle_q.numpy()[vertex_start:])
-        self.quadrature = self._sample()
+        self._frame = RestFrame.of_particles(
+            definition.cage.vertices, model.particle_q.numpy()[vertex_start:], what=self.label
+        )
+        self.quadrature = self._sample(definition)
         self.quadrature_count = len(self.quadrature.points) if self.quadrature else 0
-        self.coordinates = self._bake(progress)
+        self.coordinates = self._bake(definition, self.quadrature, progress)
         # Counts live on the device and launches cover the capacity, so that a captured graph stays valid across cuts.
         self.point_count = wp.zeros(1, dtype=wp.int32, device=self.device)
         self.vertex_count = wp.array([definition.cage.vertex_count], dtype=wp.int32, device=self.device)
@@ -77,14 +80,16 @@ class SimulatedBody:
         self.rest = wp.clone(model.particle_q[self.vertices])
         self.fixed = wp.array(self._padded(definition.fixed), dtype=wp.int32, device=self.device)
         self.piece = wp.zeros(self.capacity.vertices, dtype=wp.int32, device=self.device)
-        world = int(model.particle_world.numpy()[vertex_start])
-        world_slot = world if world >= 0 else model.gravity.shape[0] - 1
-        self.gravity = model.gravity[world_slot : world_slot + 1]
+        self.world = int(model.particle_world.numpy()[vertex_start])
+        """World of the body, -1 for the global one."""
         self.system = self._make_system() if self.quadrature_count else None
         self.contact = ContactTerm(self) if self.has_contact and self.system else None
         self._surface_buffer = None
+        self.uncut: tuple[BodyQuadrature | None, CoordinatesSnapshot] | None = None
+        self._prescribed = wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device)
         self._seams = SeamPoints()
         self._held = tuple(wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device) for _ in range(2))
+        self._motion = wp.zeros(self.capacity.vertices if self.has_contact else 0, dtype=Motion, device=self.device)
         self._always = wp.ones(1, dtype=wp.int32, device=self.device)
         self._triangles = wp.empty(self.capacity.surface_triangles, dtype=wp.vec3i, device=self.device)
         self.set_surface(self.surface)
@@ -101,6 +106,13 @@ class SimulatedBody:
         return self.cage.dimension == 2
 
     @property
+    def gravity(self) -> wp.array:
+        """Gravity in the body's world as the model has it now [m/s^2], shape (1,)."""
+        gravity = self.model.gravity
+        slot = self.world if self.world >= 0 else gravity.shape[0] - 1
+        return gravity[slot : slot + 1]
+
+    @property
     def surface_row(self) -> int:
         """Row of the surface's first point among the coordinates' points."""
         return self.quadrature_count
@@ -111,6 +123,7 @@ class SimulatedBody:
         state_out: newton.State,
         contacts: newton.Contacts | None,
         dt: float,
+        targets: wp.array,
     ) -> None:
         """Advance the cage's vertices, and the surface's particles with them; launches kernels only.
 
@@ -119,8 +132,8 @@ class SimulatedBody:
         q_in, qd_in = state_in.particle_q[self.vertices], state_in.particle_qd[self.vertices]
         q_out, qd_out = state_out.particle_q[self.vertices], state_out.particle_qd[self.vertices]
         if self.system is None:
-            wp.copy(q_out, q_in)
-            wp.copy(qd_out, qd_in)
+            inputs = [dt, q_in, qd_in, targets[self.vertices], self.is_current, q_out, qd_out]
+            wp.launch(place_vertices, dim=q_in.size, inputs=inputs, device=self.device)
         else:
             points = None
             if self.contact is not None and contacts is not None:
@@ -128,8 +141,14 @@ class SimulatedBody:
                 points = self.contact.points
             forces = state_in.particle_f[self.vertices]
             q_old, qd_old = self._before_step(q_in, qd_in) if state_in is state_out else (q_in, qd_in)
-            self.system.step(q_in, qd_in, q_out, qd_out, dt, gravity=self.gravity, forces=forces, points=points)
-            self._hold([q_old, qd_old, q_out, qd_out])
+            motion = [dt, q_in, qd_in, targets[self.vertices], self.is_current, self.fixed, self._prescribed]
+            wp.launch(prescribe_motion, dim=q_in.size, inputs=motion, device=self.device)
+            self.system.step(
+                q_in, self._prescribed, q_out, qd_out, dt, gravity=self.gravity, forces=forces, points=points
+            )
+            limits = [dt, self.model.particle_max_velocity, self.is_current, self.fixed]
+            rows = [q_old, qd_old, q_out, qd_out]
+            wp.launch(finish_vertices, dim=q_in.size, inputs=[*limits, *rows], device=self.device)
         if self.has_contact:
             if state_in is not state_out:
                 rows = self.surface_particles
@@ -151,7 +170,17 @@ class SimulatedBody:
         """Whether the state of the last step was of the body's present edit, shape (1,), int32."""
         return self._stamps.is_current[self.row : self.row + 1]
 
-    def require_current(self, state: newton.State, what: str = "the state") -> None:
+    @property
+    def edits(self) -> wp.array:
+        """Number of the body's present edit, shape (1,), int32."""
+        return self._stamps.edits[self.row : self.row + 1]
+
+    @property
+    def parts(self) -> list[slice]:
+        """The body's particles: the cage's vertices and, with contact, the surface's points."""
+        return [self.vertices, self.surface_particles] if self.has_contact else [self.vertices]
+
+    def require_current(self, state: newton.State, what: str = "state") -> None:
         """Refuse a state that missed an edit of the body; reads it on the host.
 
         Args:
@@ -176,8 +205,12 @@ class SimulatedBody:
             state: The state, or the model with its initial one.
             enabled: Zero where they are to stay, shape (1,), int32; None for always.
         """
-        self._embed(state.particle_q[self.vertices], state.particle_q[self.surface_particles], enabled)
-        self._embed(state.particle_qd[self.vertices], state.particle_qd[self.surface_particles], enabled)
+        vertices, rows = self.vertices, self.surface_particles
+        inputs = [state.particle_q[vertices], state.particle_qd[vertices], self._motion]
+        wp.launch(join_motion, dim=self.capacity.vertices, inputs=inputs, device=self.device)
+        inputs = [self._always if enabled is None else enabled, self._motion, self.surface_rows]
+        inputs += [state.particle_q[rows], state.particle_qd[rows]]
+        wp.launch(embed_motion, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
 
     def surface_points(self, state: newton.State) -> wp.array:
         """Positions of the surface's points [m], shape (point_count,), a view that the next call overwrites."""
@@ -188,16 +221,17 @@ class SimulatedBody:
             if self._surface_buffer is None:
                 self._surface_buffer = wp.zeros(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
             points = self._surface_buffer
-        self._embed(state.particle_q[self.vertices], points, None)
+        self._embed(state.particle_q[self.vertices], points)
         sites = points[: self.surface.site_count]
         return sites if self.surface.point_site is None else self._seams.points_of(self.surface, sites)
 
-    def surface_velocities(self, state: newton.State) -> wp.array:
-        """Velocities of the surface's points [m/s], shape (point_count,)."""
+    def surface_velocities(self, state: newton.State) -> np.ndarray:
+        """Velocities of the surface's points [m/s], shape (point_count, 3), on the host."""
         self.require_current(state)
-        velocities = wp.empty(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
-        self._embed(state.particle_qd[self.vertices], velocities, None)
-        return velocities[: len(self.surface.points)]
+        sites = wp.empty(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
+        self._embed(state.particle_qd[self.vertices], sites)
+        velocities, site = sites.numpy()[: self.surface.site_count], self.surface.point_site
+        return velocities if site is None else velocities[site]
 
     def surface_triangles(self) -> wp.array:
         """Triangles of the surface, shape (triangle_count,) vec3i."""
@@ -236,11 +270,10 @@ class SimulatedBody:
             states: States that are carried over.
         """
         model, row = self.model, slice(self.row, self.row + 1)
-        parts = [self.vertices, self.surface_particles] if self.has_contact else [self.vertices]
         arrays = [self.rest, self.fixed, self.vertex_count, self.point_count, self._triangles]
         arrays += [self._stamps.edits[row], *(state_edits(owner)[row] for owner in (model, *states))]
         owners = (model, *states)
-        arrays += [array[part] for o in owners for array in (o.particle_q, o.particle_qd) for part in parts]
+        arrays += [array[part] for o in owners for array in (o.particle_q, o.particle_qd) for part in self.parts]
         if self.has_contact:
             arrays.append(model.particle_flags[self.surface_particles])
         if self.system is not None:
@@ -259,6 +292,7 @@ class SimulatedBody:
             cage=self.cage,
             surface=self.surface,
             fixed=self.fixed.numpy()[: self.cage.vertex_count] != 0,
+            uncut=self.definition.before_cuts if number > 0 else None,
             edit=number,
             last_edit=max(number, self.definition.last_edit),
         )
@@ -291,7 +325,11 @@ class SimulatedBody:
             self.system.stabilize(self.cage.vertices, self.cage.mesh.edges)
             self.system.average(self.cage.vertices)
             self.system.refresh()
-            wp.copy(self.model.particle_mass[self.vertices], self.system.vertex_mass)
+            self.show_masses()
+
+    def show_masses(self) -> None:
+        """Bring the model's masses up to date with the system's."""
+        wp.copy(self.model.particle_mass[self.vertices], self.system.vertex_mass)
 
     def energy(self, state: newton.State) -> Energy:
         """Elastic and kinetic energy of a state [J], read on the host."""
@@ -314,12 +352,7 @@ class SimulatedBody:
             indices
         )
 
-    def _embed(self, vertices: wp.array, points: wp.array, enabled: wp.array | None) -> None:
-        inputs = [self._always if enabled is None else enabled, vertices, self.surface_rows, points]
-        wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
-
-    def _sample(self) -> BodyQuadrature | None:
-        definition = self.definition
+    def _sample(self, definition: BodyDefinition) -> BodyQuadrature | None:
         if not definition.quadrature_count:
             return None
         return BodyQuadrature.sampled(
@@ -330,11 +363,23 @@ class SimulatedBody:
             thickness=definition.thickness,
         )
 
-    def _bake(self, progress: Callable[[float], None] | None) -> HarmonicCoordinates:
-        definition, surface = self.definition, self.definition.surface
-        quadrature = np.zeros((0, definition.cage.dimension))
-        if self.quadrature is not None:
-            quadrature = self.quadrature.points
+    def fresh(self, definition: BodyDefinition) -> tuple[BodyQuadrature | None, HarmonicCoordinates]:
+        """Quadrature and coordinates as a new solver would make them; nothing of the body changes.
+
+        Args:
+            definition: What the body is made of.
+        """
+        sample = self._sample(definition)
+        return sample, self._bake(definition, sample, None)
+
+    def _bake(
+        self,
+        definition: BodyDefinition,
+        sample: BodyQuadrature | None,
+        progress: Callable[[float], None] | None,
+    ) -> HarmonicCoordinates:
+        surface = definition.surface
+        quadrature = np.zeros((0, definition.cage.dimension)) if sample is None else sample.points
         sites = surface.site_points.copy()
         on_cuts = np.flatnonzero(surface.site_key >= 0)
         if len(on_cuts):
@@ -354,6 +399,10 @@ class SimulatedBody:
             progress=progress,
             **definition.options,
         )
+
+    def _embed(self, vertices: wp.array, points: wp.array) -> None:
+        inputs = [vertices, self.surface_rows, points]
+        wp.launch(embed, dim=self.capacity.surface_points, inputs=inputs, device=self.device)
 
     def _make_system(self) -> ReducedSystem:
         return ReducedSystem(

@@ -8,9 +8,6 @@ from __future__ import annotations
 import newton
 import warp as wp
 
-from ...elastic import PointForces
-from ..body.embedding import SurfaceRows
-
 
 @wp.struct
 class SoftContacts:
@@ -91,15 +88,3 @@ def contact_state(state: newton.State) -> ContactState:
     found.particle_q, found.particle_qd = state.particle_q, state.particle_qd
     found.body_q, found.body_qd = state.body_q, state.body_qd
     return found
-
-
-def make_contact_forces(rows: SurfaceRows, capacity: int, device: wp.Device) -> PointForces:
-    """Room for forces on as many surface points, whose rows are given."""
-    points = PointForces()
-    points.weights, points.first_row = rows.weights, rows.first_row
-    with wp.ScopedDevice(device):
-        points.force, points.product = (wp.zeros(capacity, dtype=wp.vec3) for _ in range(2))
-        points.stiffness, points.damping, points.system = (wp.zeros(capacity, dtype=wp.mat33) for _ in range(3))
-        points.touched = wp.zeros(capacity, dtype=wp.int32)
-        points.count = wp.zeros(1, dtype=wp.int32)
-    return points

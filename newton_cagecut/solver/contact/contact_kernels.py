@@ -35,6 +35,8 @@ def collect_contacts(
     if row < 0 or row >= rows.point_count[0]:
         return
     shape = contacts.shape[c]
+    if shape < 0 or shape >= model.shape_body.shape[0]:  # of another model
+        return
     rigid = model.shape_body[shape]
     point = contacts.point[c]
     velocity = contacts.velocity[c]

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 import newton
 import warp as wp
 
+from ...elastic import make_point_forces
 from . import contact_kernels
-from .contact_arrays import contact_model, contact_state, make_contact_forces, soft_contacts
+from .contact_arrays import contact_model, contact_state, soft_contacts
 
 if TYPE_CHECKING:
     from ..body.simulated_body import SimulatedBody
@@ -31,7 +32,8 @@ class ContactTerm:
 
     def __init__(self, body: SimulatedBody) -> None:
         self._body = body
-        self.points = make_contact_forces(body.surface_rows, body.capacity.surface_points, body.device)
+        rows = body.surface_rows
+        self.points = make_point_forces(rows.weights, rows.first_row, body.capacity.surface_points)
 
     def collect(self, state: newton.State, contacts: newton.Contacts) -> None:
         """Sum the soft contacts of each surface point."""

@@ -42,6 +42,11 @@ class BodyCut:
         self._surface_cut = SurfaceCut(body.surface, self.cut.plane, self.cut.wall, window=self.cut.window)
 
     @property
+    def body(self) -> SimulatedBody:
+        """The body that is cut, as the solver holds it."""
+        return self._body
+
+    @property
     def label(self) -> str:
         """Name of the body."""
         return self._body.label

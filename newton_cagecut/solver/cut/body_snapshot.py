@@ -15,6 +15,7 @@ from dataclasses import replace
 import newton
 import warp as wp
 
+from ...geometry import as_sequence
 from ...harmonic import Journal
 from ..body.simulated_body import SimulatedBody
 from .body_cut import BodyCut
@@ -32,10 +33,18 @@ class BodySnapshot:
 
     def __init__(self, body: SimulatedBody, states: Sequence[newton.State], cuts: Sequence[BodyCut]) -> None:
         self._body, self._states = body, checked_states(body, states)
+        for number, cut in enumerate(as_sequence(cuts, BodyCut, "cuts")):
+            if cut.body is not body:
+                raise ValueError(f"cuts[{number}] is of another body than {body.label}; snapshot that one too")
         self._surface, self._definition, self._quadrature = body.surface, body.definition, body.quadrature
         self._coordinates = body.coordinates.snapshot()
         self._arrays = [(array, wp.clone(array)) for array in body.edited_arrays(self._states)]
         self._cuts = [(cut, cut.cut, cut._surface_cut) for cut in cuts]
+
+    @property
+    def body(self) -> SimulatedBody:
+        """The body, as the solver holds it."""
+        return self._body
 
     @property
     def label(self) -> str:

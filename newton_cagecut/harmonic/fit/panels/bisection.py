@@ -41,11 +41,13 @@ def bisect(
         # Of edges that are as long but for rounding, the one that all its triangles agree on.
         longest = _first_longest(squared, key)
         order = (longest[:, None] + np.arange(3)) % 3
-        triangles = np.take_along_axis(triangles, order, axis=1)
+        turned = np.take_along_axis(triangles, order, axis=1)
         key = np.take_along_axis(key, order, axis=1)
         split = _closed(key, np.unique(key[marked, 0]))
         place = np.minimum(np.searchsorted(split, key), len(split) - 1)
         middle = np.where(split[place] == key, len(points) + place, -1)
+        # Those that stay whole stay as they are: how often others are divided leaves no trace in them.
+        triangles = np.where(middle[:, :1] >= 0, turned, triangles)
         triangles, source = _children(triangles, middle)
         owner, fresh = owner[source], middle[source, 0] >= 0
         points = np.concatenate([points, (points[split // len(points)] + points[split % len(points)]) / 2.0])

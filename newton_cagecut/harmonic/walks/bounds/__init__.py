@@ -16,7 +16,8 @@ from functools import cache
 import numpy as np
 import warp as wp
 
-from ...options import BOUNDS, require_choice
+from ....geometry import as_choice
+from ...options import BOUNDS
 from .dop import make_dop
 from .kind import BoundsKind
 from .sphere import make_sphere
@@ -38,7 +39,7 @@ def make_bounds(kind: str, dimension: int) -> BoundsKind:
     Raises:
         ValueError: There is no such kind.
     """
-    require_choice("bounds", kind, BOUNDS)
+    as_choice(kind, BOUNDS, "bounds")
     return _make("dop18" if dimension == 2 and kind == "dop26" else kind, dimension)
 
 
