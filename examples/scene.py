@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
 from argparse import ArgumentParser, Namespace
 
 import newton
@@ -24,7 +25,7 @@ from newton_cagecut.solver import CageBody
 _NO_DISPLAY = ("NoSuchDisplayException", "NoSuchConfigException", "NoSuchScreenModeException")
 
 
-class CutScene:
+class CutScene(ABC):
     """What the scenes have in common: a scene says what is in it, this does the rest.
 
     Args:
@@ -66,13 +67,13 @@ class CutScene:
         viewer.set_model(self.model)
         self._aim_viewer()
 
+    @abstractmethod
     def add_bodies(self, builder: newton.ModelBuilder) -> None:
         """Add what is in the scene, but for the ground."""
-        raise NotImplementedError
 
+    @abstractmethod
     def cuts(self) -> list[PlannedCut]:
         """Return the cuts that will be made."""
-        raise NotImplementedError
 
     def painted(self, body: CageBody) -> np.ndarray:
         """Return which triangles of a body's surface have the colour of the paint, as a mask."""

@@ -295,6 +295,9 @@ def test_reset_checks_its_arguments():
         solver.reset(states[0], wp.zeros(3, dtype=wp.bool, device="cpu"))
     with pytest.raises(TypeError, match="model with cage bodies"):
         solver.reset(newton.ModelBuilder().finalize(device="cpu").state())
+    other = _worlds(2)[2][0]
+    with pytest.raises(ValueError, match="the solver's own model"):
+        solver.reset(other)
     with pytest.raises(TypeError, match="newton.ModelFlags"):
         solver.notify_model_changed("gravity")
 

@@ -34,12 +34,10 @@ class SceneRecorder:
 
     def __init__(self, model: newton.Model, bodies: Sequence[SimulatedBody]) -> None:
         self._model, self._bodies = model, bodies
-        self._shapes: tuple[SceneShape, ...] | None = None
+        self._shapes = _shapes_of(model)
 
     def frame(self, state: newton.State) -> SceneFrame:
         """The scene in a state, read on the host."""
-        if self._shapes is None:
-            self._shapes = _shapes_of(self._model)
         return SceneFrame(
             bodies=tuple(_body_frame(body, state) for body in self._bodies),
             shapes=self._shapes,

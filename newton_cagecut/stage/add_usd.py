@@ -5,21 +5,21 @@
 
 A body is a prim with ``PhysicsDeformableBodyAPI``; below it stand the mesh that is rendered, untagged, and the cage, a
 mesh with ``CageCutCageAPI``. Its physics material has ``PhysicsVolumeDeformableMaterialAPI``. A blade is any prim with
-``CageCutBladeAPI``. Both schemas are codeless (``schema/``); a stage can be read where they are not registered.
+``CageCutBladeAPI``. The schemas are read as they are written: they are registered nowhere.
 """
 
 from __future__ import annotations
 
-from os import PathLike, fspath
+from os import PathLike
 
 import newton
 import numpy as np
-from pxr import Tf, Usd, UsdGeom, UsdPhysics, UsdShade
+from pxr import Usd, UsdGeom, UsdPhysics, UsdShade
 
 from ..elastic import Material
 from ..section import Blade
 from ..solver import Capacity, SolverCageCut, add_cage_body
-from ..usd import read_cage, read_surface, turn_up
+from ..usd import open_stage, read_cage, read_surface, turn_up
 from .stage_scene import StageBlade, StageScene
 
 _OPTIONS = {"walks": int, "seed": int, "quadrature": int, "cuttable": bool}
@@ -44,7 +44,7 @@ def add_usd(
         ValueError: It is no USD, it has no cage bodies, or a prim lacks something or holds something wrong; the text
             names the prim. The builder may hold the bodies before that one then.
     """
-    stage = _open(source)
+    stage = open_stage(source)
     SolverCageCut.register_custom_attributes(builder)
     axis = newton.Axis.from_any(builder.up_axis).name
     if axis not in ("Y", "Z"):
@@ -163,18 +163,6 @@ def _blade(prim: Usd.Prim, bodies: dict[str, int], axis: str) -> StageBlade:
     times = (np.array(codes) - stage.GetStartTimeCode()) / stage.GetTimeCodesPerSecond()
     depths = np.array([track.Get(code) for code in codes], dtype=np.float64) * unit
     return StageBlade(path=str(prim.GetPath()), body=bodies[targets[0]], blade=blade, times=times, depths=depths)
-
-
-def _open(source: str | PathLike | Usd.Stage) -> Usd.Stage:
-    """A stage, with Python's errors in the place of USD's."""
-    if isinstance(source, Usd.Stage):
-        return source
-    with open(fspath(source), "rb"):
-        pass
-    try:
-        return Usd.Stage.Open(fspath(source))
-    except Tf.ErrorException:
-        raise ValueError(f"{fspath(source)} cannot be read as USD: it is damaged, cut short, or no USD file") from None
 
 
 def _has(prim: Usd.Prim, schema: str) -> bool:

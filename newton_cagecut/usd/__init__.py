@@ -7,7 +7,7 @@ from .body_frame import BodyFrame
 from .layers import checked_path
 from .mesh_data import MeshData, check_mesh, turn_up
 from .outline import border_of
-from .read import read_cage, read_mesh, read_meshes, read_surface
+from .read import open_stage, read_cage, read_mesh, read_meshes, read_surface
 from .scene_frame import SceneFrame, SceneShape
 from .validate import validate_animation
 from .write import write_cage, write_mesh
@@ -21,6 +21,7 @@ __all__ = [
     "border_of",
     "check_mesh",
     "checked_path",
+    "open_stage",
     "read_cage",
     "read_mesh",
     "read_meshes",

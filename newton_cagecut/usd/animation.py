@@ -10,7 +10,7 @@ from os import PathLike
 from typing import Any, Literal
 
 import numpy as np
-from pxr import Tf, UsdGeom
+from pxr import UsdGeom
 
 from ..geometry import as_finite, as_points, as_sequence, shown
 from .body_frame import BodyFrame
@@ -22,6 +22,7 @@ from .layers import (
     define_mesh,
     export_stage,
     flat_faces,
+    free_name,
     new_file_stage,
     save_stage,
     write_arrays,
@@ -228,7 +229,7 @@ class AnimationWriter:
                 options = {"frame": frame, "since": since, "options": self._options}
                 self._bodies[body.name] = BodyPrims(self.stage, new_paths[body.name], body, **options)
             self._bodies[body.name].write(frame, body, self._scale)
-        if not isinstance(bodies[0] if bodies else None, BodyFrame) and bodies:
+        if bodies and not isinstance(bodies[0], BodyFrame):
             self._dress(frame, scene)
         if self.frame is None:
             self.stage.SetStartTimeCode(frame)
@@ -305,11 +306,10 @@ class AnimationWriter:
 
     def _free_name(self, label: str) -> str:
         """Return a name below ``/World`` that is not taken, as near to a label as USD takes it."""
-        stem = Tf.MakeValidIdentifier(label.strip("/") or "body")
-        name, number = stem, 2
-        while name in ("materials", "lights", "camera") or self.stage.GetPrimAtPath(f"/World/{name}"):
-            name, number = f"{stem}_{number}", number + 1
-        return name
+        return free_name(
+            label.strip("/") or "body",
+            lambda name: name in ("materials", "lights", "camera") or bool(self.stage.GetPrimAtPath(f"/World/{name}")),
+        )
 
     def _require_open(self) -> None:
         if self._closed:

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from os import PathLike
 
 import numpy as np
@@ -31,6 +31,20 @@ def checked_path(path: str | PathLike) -> str:
     if not os.path.isdir(folder):
         raise FileNotFoundError(f"{text}: there is no folder {folder}")
     return text
+
+
+def free_name(label: str, is_taken: Callable[[str], bool]) -> str:
+    """A name that is not taken, as near to a label as USD takes it.
+
+    Args:
+        label: The label.
+        is_taken: Whether a name is.
+    """
+    stem = Tf.MakeValidIdentifier(label)
+    name, number = stem, 2
+    while is_taken(name):
+        name, number = f"{stem}_{number}", number + 1
+    return name
 
 
 def checked_name(name: str) -> str:

@@ -8,9 +8,9 @@ from collections.abc import Callable
 from itertools import product
 
 import numpy as np
-from pxr import Gf, Tf, Usd, UsdGeom, UsdLux
+from pxr import Gf, Usd, UsdGeom, UsdLux
 
-from .layers import color, define_mesh, vectors, write_arrays
+from .layers import color, define_mesh, free_name, vectors, write_arrays
 from .materials import bind_material
 from .scene_frame import SceneFrame, SceneShape
 
@@ -143,8 +143,5 @@ def _axes(back: np.ndarray, stage: Usd.Stage) -> tuple[np.ndarray, np.ndarray, n
 def _free_child(parent: Usd.Prim, name: str) -> str:
     """Return the path of a child that is not there yet."""
     taken = {child.GetName() for child in parent.GetChildren()}
-    stem = Tf.MakeValidIdentifier(name.strip("/").split("/")[-1])
-    free, number = stem, 2
-    while free in taken:
-        free, number = f"{stem}_{number}", number + 1
+    free = free_name(name.strip("/").split("/")[-1], taken.__contains__)
     return str(parent.GetPath().AppendChild(free))

@@ -23,7 +23,7 @@ from ..plane_confinement import in_plane, inverse_in_plane
 from ..step_kernels import add_inertia, tie
 from .cholesky import make_factor_solve, wait
 from .lanes import entry, lane_struct, lane_type, make_gather, make_scatter
-from .point_forces import PointForces, as_four, as_three, point_value, pull_back, unpacked
+from .point_forces import PointForces, as_four, as_three, multiply_points, pull_back
 from .stiffness_matrix import DenseMatrix
 
 wp.set_module_options({"enable_backward": False})
@@ -94,9 +94,7 @@ def make_product(width: int) -> wp.Function:
         for k in range(thread, lanes.tensions.shape[1], wp.block_dim()):
             gather_block(k, search.direction, body, lanes, changes)
             stress_block(k, lanes, changes)
-        for slot in range(thread, points.count[0], wp.block_dim()):
-            value = point_value(slot, search.fours, count, points)
-            points.product[slot] = as_four(unpacked(points.system[slot]) * value)
+        multiply_points(thread, search.fours, count, points)
         wait()
         pull_back(thread, count, points, search.pulled)
         wait()

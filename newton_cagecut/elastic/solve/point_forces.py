@@ -90,6 +90,14 @@ def point_value(slot: int, values: wp.array[wp.vec4], vertex_count: int, points:
 
 
 @wp.func
+def multiply_points(thread: int, values: wp.array[wp.vec4], vertex_count: int, points: PointForces):
+    """Multiply a vertex field at the touched points with their blocks; all threads of the block call it."""
+    for slot in range(thread, points.count[0], wp.block_dim()):
+        value = point_value(slot, values, vertex_count, points)
+        points.product[slot] = as_four(unpacked(points.system[slot]) * value)
+
+
+@wp.func
 def pull_back(thread: int, vertex_count: int, points: PointForces, pulled: wp.array[wp.vec4]):
     """Sum what the touched points pull; all threads of the block call it."""
     last = points.weights.shape[1] - 1

@@ -10,7 +10,7 @@ import warp as wp
 from ..arrays import DAMPING, FORCE, STIFFNESS, LinearSystem, StepArrays
 from .cholesky import wait
 from .conjugate_gradient import Search
-from .point_forces import PointForces, as_four, as_three, packed, point_value, pull_back, unpacked
+from .point_forces import PointForces, as_four, as_three, multiply_points, packed, point_value, pull_back
 
 wp.set_module_options({"enable_backward": False})
 
@@ -73,9 +73,7 @@ def add_point_product(
     count = system.row_count[0]
     spread(thread, count, values, search.fours)
     wait()
-    for slot in range(thread, points.count[0], wp.block_dim()):
-        value = point_value(slot, search.fours, count, points)
-        points.product[slot] = as_four(unpacked(points.system[slot]) * value)
+    multiply_points(thread, search.fours, count, points)
     wait()
     pull_back(thread, count, points, search.pulled)
     wait()

@@ -37,12 +37,6 @@ wp.set_module_options({"enable_backward": False})
 
 
 @wp.func
-def is_finite(v: wp.vec3) -> bool:
-    """Whether all components are finite."""
-    return wp.isfinite(v[0]) and wp.isfinite(v[1]) and wp.isfinite(v[2])
-
-
-@wp.func
 def confined(v: wp.vec3d, body: BodyArrays) -> wp.vec3d:
     """The part of a vector in a plane body's plane; of a solid body all of it."""
     if body.normal.shape[0] > 0:
@@ -69,9 +63,9 @@ def begin_stages(
     if i == 0:
         step.scales[TIME_STEP] = dt
     if i < body.vertex_count[0]:
-        if not (is_finite(positions[i]) and is_finite(velocities[i])):
+        if not (wp.isfinite(positions[i]) and wp.isfinite(velocities[i])):
             wp.atomic_max(record.reason, 0, BAD_START)
-        elif not (is_finite(gravity[0]) and is_finite(forces[i])):
+        elif not (wp.isfinite(gravity[0]) and wp.isfinite(forces[i])):
             wp.atomic_max(record.reason, 0, BAD_FORCE)
         if body.fixed[i] != HELD:
             velocity = confined(wp.vec3d(velocities[i]), body)
@@ -219,7 +213,7 @@ def end_stages(
                 normal = body.normal[0]
                 place -= wp.dot(normal, place - wp.vec3d(body.rest[i])) * normal
             position = wp.vec3(place)
-        if not (is_finite(position) and is_finite(velocity)):
+        if not (wp.isfinite(position) and wp.isfinite(velocity)):
             wp.atomic_max(record.reason, 0, BAD_RESULT)
     stage.position_out[i] = position
     stage.velocity_out[i] = velocity

@@ -88,6 +88,7 @@ class EditStamps:
         known = self._known.get(state)
         if known is not None and all(array is other for array, other in zip(arrays, known, strict=True)):
             return
+        edits = state_edits(state, what)
         for name, array in zip(("particle_q", "particle_qd", "particle_f"), arrays, strict=False):
             if array is None:
                 raise TypeError(f"{what} must be a state with particles, but {what}.{name} is None")
@@ -98,7 +99,6 @@ class EditStamps:
                 )
             if array.device != self.device:
                 raise ValueError(f"{what}.{name} is on {array.device}, the model on {self.device}; pass its own states")
-        edits = state_edits(state, what)
         if edits.shape != self.edits.shape:
             raise ValueError(
                 f"{what} is of a model with {edits.size} cage bodies, the solver's has {self.edits.size}; pass states "

@@ -78,7 +78,7 @@ class SimulatedBody:
             vertex_count=self.vertex_count,
         )
         self.rest = wp.clone(model.particle_q[self.vertices])
-        self.fixed = wp.array(self._padded(definition.fixed), dtype=wp.int32, device=self.device)
+        self.fixed = wp.array(self.padded(definition.fixed), dtype=wp.int32, device=self.device)
         self.piece = wp.zeros(self.capacity.vertices, dtype=wp.int32, device=self.device)
         self.world = int(model.particle_world.numpy()[vertex_start])
         """World of the body, -1 for the global one."""
@@ -259,8 +259,8 @@ class SimulatedBody:
             states: States that the edit carries over.
         """
         journal.when_taken_back(self.refresh)
-        journal.when_taken_back(partial(self.model.cagecut.definition.__setitem__, self.row, self.definition))
-        journal.keep_attributes(self, "surface", "definition", "quadrature")
+        self.keep_definition(journal)
+        journal.keep_attributes(self, "surface", "quadrature")
         journal.keep(*self.edited_arrays(states))
 
     def edited_arrays(self, states: Sequence[newton.State]) -> list[wp.array]:
@@ -280,6 +280,20 @@ class SimulatedBody:
             arrays.append(self.system.volumes)
         return arrays
 
+    def keep_definition(self, journal: Journal) -> None:
+        """Keep what the body is made of, its own and the model's.
+
+        Args:
+            journal: The edit's journal.
+        """
+        journal.when_taken_back(partial(self.model.cagecut.definition.__setitem__, self.row, self.definition))
+        journal.keep_attributes(self, "definition")
+
+    def define(self, definition: BodyDefinition) -> None:
+        """Replace what the body is made of, its own and the model's."""
+        self.definition = definition
+        self.model.cagecut.definition[self.row] = definition
+
     def commit_edit(self, number: int, states: Sequence[newton.State]) -> None:
         """Hand an edit on to model and states: what the body is now, and which edit that is.
 
@@ -287,16 +301,18 @@ class SimulatedBody:
             number: Number of the edit.
             states: States that were carried over.
         """
-        self.definition = replace(
-            self.definition,
-            cage=self.cage,
-            surface=self.surface,
-            fixed=self.fixed.numpy()[: self.cage.vertex_count] != 0,
-            uncut=self.definition.before_cuts if number > 0 else None,
-            edit=number,
-            last_edit=max(number, self.definition.last_edit),
+        before = self.definition
+        self.define(
+            replace(
+                before,
+                cage=self.cage,
+                surface=self.surface,
+                fixed=self.fixed.numpy()[: self.cage.vertex_count] != 0,
+                uncut=before.before_cuts if number > 0 else None,
+                edit=number,
+                last_edit=max(number, before.last_edit),
+            )
         )
-        self.model.cagecut.definition[self.row] = self.definition
         for edits in (self._stamps.edits, *(state_edits(owner) for owner in (self.model, *states))):
             edits[self.row : self.row + 1].fill_(number)
         if self.has_contact:
@@ -321,7 +337,7 @@ class SimulatedBody:
     def refresh(self) -> None:
         """Bring what depends on the weights up to date after an edit."""
         if self.system is not None:
-            self.piece.assign(self._padded(self.cage.vertex_piece))
+            self.piece.assign(self.padded(self.cage.vertex_piece))
             self.system.stabilize(self.cage.vertices, self.cage.mesh.edges)
             self.system.average(self.cage.vertices)
             self.system.refresh()
@@ -348,9 +364,8 @@ class SimulatedBody:
         Returns:
             Rest positions [m], shape (n, dimension).
         """
-        return surface.site_points[indices] + _NUDGE * self.definition.cage.diameter * surface.directions_inward(
-            indices
-        )
+        distance = _NUDGE * self.definition.cage.diameter
+        return surface.site_points[indices] + distance * surface.directions_inward(indices)
 
     def _sample(self, definition: BodyDefinition) -> BodyQuadrature | None:
         if not definition.quadrature_count:
@@ -421,7 +436,8 @@ class SimulatedBody:
             limits=self.config.limits,
         )
 
-    def _padded(self, mask: np.ndarray) -> np.ndarray:
+    def padded(self, mask: np.ndarray) -> np.ndarray:
+        """A value a vertex of the cage, and zeros for spare ones, shape (vertex_capacity,), int32."""
         padded = np.zeros(self.capacity.vertices, dtype=np.int32)
         padded[: len(mask)] = mask
         return padded

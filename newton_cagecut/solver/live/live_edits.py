@@ -43,10 +43,10 @@ def set_material(body: SimulatedBody, material: Material) -> None:
     with Journal() as journal:
         if body.system is not None:
             journal.when_taken_back(lambda: _put_material(body, before))
-        _keep_definition(body, journal)
+        body.keep_definition(journal)
         if body.system is not None:
             _put_material(body, material)
-        _define(body, replace(body.definition, material=material))
+        body.define(replace(body.definition, material=material))
 
 
 def set_fixed(body: SimulatedBody, fixed: np.ndarray | Sequence[int] | None) -> None:
@@ -64,11 +64,9 @@ def set_fixed(body: SimulatedBody, fixed: np.ndarray | Sequence[int] | None) -> 
     body.require_own_edits()
     with Journal() as journal:
         journal.keep(body.fixed)
-        _keep_definition(body, journal)
-        rows = np.zeros(body.capacity.vertices, dtype=np.int32)
-        rows[: len(mask)] = mask
-        body.fixed.assign(rows)
-        _define(body, replace(body.definition, fixed=mask))
+        body.keep_definition(journal)
+        body.fixed.assign(body.padded(mask))
+        body.define(replace(body.definition, fixed=mask))
 
 
 def take_over(body: SimulatedBody) -> None:
@@ -142,16 +140,3 @@ def _put_material(body: SimulatedBody, material: Material) -> None:
     """Hand a material on to the system, and the masses to the model."""
     body.system.set_material(material)
     body.show_masses()
-
-
-def _keep_definition(body: SimulatedBody, journal: Journal) -> None:
-    """Keep what a body is made of, its own and the model's."""
-    definition = body.definition
-    journal.keep_attributes(body, "definition")
-    journal.when_taken_back(lambda: body.model.cagecut.definition.__setitem__(body.row, definition))
-
-
-def _define(body: SimulatedBody, definition: BodyDefinition) -> None:
-    """Replace what a body is made of, its own and the model's."""
-    body.definition = definition
-    body.model.cagecut.definition[body.row] = definition

@@ -12,7 +12,7 @@ import numpy as np
 import warp as wp
 
 from ...elastic import Material
-from ..body.edit_stamps import state_edits
+from ..body.edit_stamps import EditStamps
 from ..body.simulated_body import SimulatedBody
 from . import live_edits
 from .resets import reset_body, slot_of
@@ -25,6 +25,7 @@ class LiveSolver(newton.solvers.SolverBase):
     """Bit of ``notify_model_changed``: another solver of the model has changed materials or fixed vertices."""
 
     _simulated: list[SimulatedBody]
+    _stamps: EditStamps
 
     def reset(
         self,
@@ -48,10 +49,10 @@ class LiveSolver(newton.solvers.SolverBase):
 
         Raises:
             TypeError: The state is none of a model with cage bodies, or the mask is no array of ``wp.bool``.
-            ValueError: The mask has another length or device, or ``uncut`` was asked for while a graph is captured or
-                after a body was edited through another solver.
+            ValueError: The state is of another model, the mask has another length or device, or ``uncut`` was asked for
+                while a graph is captured or after a body was edited through another solver.
         """
-        state_edits(state)
+        self._stamps.require_own(state, "state")
         mask = self._normalize_reset_world_mask(world_mask)
         if mask is None:
             mask = self._all_worlds()

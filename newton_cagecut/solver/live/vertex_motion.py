@@ -18,6 +18,12 @@ from ...elastic import DRIVEN, HELD
 wp.set_module_options({"enable_backward": False})
 
 
+@wp.func
+def has_target(target: wp.vec3, is_current: wp.array[wp.int32]) -> bool:
+    """Whether a vertex goes to a target, in a state of the body's present edit."""
+    return is_current[0] != 0 and wp.isfinite(target)
+
+
 @wp.kernel(enable_backward=False)
 def prescribe_motion(
     dt: float,
@@ -35,7 +41,7 @@ def prescribe_motion(
         velocity = wp.vec3()
         fixed[i] = HELD
         target = wp.vec3(targets[i])
-        if is_current[0] != 0 and wp.isfinite(target[0]) and wp.isfinite(target[1]) and wp.isfinite(target[2]):
+        if has_target(target, is_current):
             velocity = (target - positions[i]) / dt
             fixed[i] = DRIVEN
     prescribed[i] = velocity
@@ -54,7 +60,7 @@ def place_vertices(
     """The step of a body without elasticity: vertices with targets go there, the others stay."""
     i = wp.tid()
     position, velocity, target = wp.vec3(positions[i]), wp.vec3(velocities[i]), wp.vec3(targets[i])
-    if is_current[0] != 0 and wp.isfinite(target[0]) and wp.isfinite(target[1]) and wp.isfinite(target[2]):
+    if has_target(target, is_current):
         velocity = (target - position) / dt
         position = target
     positions_out[i] = position
