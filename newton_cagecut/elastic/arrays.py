@@ -79,8 +79,10 @@ class BodyArrays:
     """Volumes, one a point [m^3]."""
     averaged: wp.array[int]
     """Nonzero if strain is averaged over clusters of points, shape (1,)."""
+    clusters: wp.array[int]
+    """The cluster that a row is of, one a row."""
     softened: wp.array[wp.vec2d]
-    """Lame's constants mu and lambda of the material at the points, beside the clusters, shape (1,) [Pa]."""
+    """Lame's constants mu and lambda of the material at the points, one a cluster [Pa]."""
     gradients: wp.array2d[wp.vec3]
     """Gradients that strain is taken with, of the points, then of the clusters, one a row and vertex [1/m]."""
     volumes: wp.array[float]
@@ -204,7 +206,8 @@ def make_body_arrays(
         body.gradients = wp.zeros((rows, capacity), dtype=wp.vec3)
         body.volumes = wp.zeros(rows, dtype=float)
         body.averaged = wp.zeros(1, dtype=int)
-        body.softened = wp.zeros(1, dtype=wp.vec2d)
+        body.clusters = wp.zeros(rows, dtype=int)
+        body.softened = wp.zeros(rows - points, dtype=wp.vec2d)
         if plane:
             body.normal = wp.zeros(1, dtype=wp.vec3d)
         body.piece_count = wp.ones(1, dtype=int)

@@ -9,7 +9,7 @@ import numpy as np
 import warp as wp
 
 from .arrays import make_body_arrays
-from .averaging import softened_moduli, strain_rows
+from .averaging import ClusterFields, softened_moduli, strain_rows
 from .backward_euler import BackwardEuler
 from .energy import Energy, EnergyMeter
 from .implicit_integrator import Motion
@@ -104,6 +104,7 @@ class ReducedSystem:
         )
         self.mass, self.vertex_mass = body.mass, body.vertex_mass
         self.stabilizing_stiffness, self.stabilizing_mass = body.stabilizing_stiffness, body.stabilizing_mass
+        self._fields: list[ClusterFields | None] = []
         self.record = make_step_record(self.device, None, None)
         options = {"limits": (limits or SolveLimits()).measured(material.poisson), "record": self.record}
         if integrator == "paper":
@@ -159,15 +160,18 @@ class ReducedSystem:
         body.gradients.assign(gradients)
         body.volumes.assign(rows.volumes.astype(np.float32))
         body.anchors[self.point_count :].assign(rows.anchors.astype(np.int32))
+        body.clusters.assign(rows.clusters.astype(np.int32))
         body.averaged.fill_(1)
+        self._fields = rows.fields
         self._soften()
 
     def _soften(self) -> None:
         """Set the constants of the material at the points."""
         lame = self.material.lame
-        if self.arrays.averaged.numpy()[0]:
-            lame = softened_moduli(*lame, plane=self.is_plane)
-        self.arrays.softened.assign(np.array([lame]))
+        softened = np.tile(lame, (self.arrays.softened.shape[0], 1))
+        for row, fields in zip(softened, self._fields, strict=False):
+            row[:] = softened_moduli(*lame, fields)
+        self.arrays.softened.assign(softened)
 
     def stabilize(self, vertices: np.ndarray, edges: np.ndarray) -> None:
         """Tie vertices that the quadrature hardly sees to their neighbours; call :meth:`refresh` afterwards.

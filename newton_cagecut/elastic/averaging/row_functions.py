@@ -27,7 +27,7 @@ def make_row_energy(model: str) -> wp.Function:
 
     @wp.func
     def row_energy(q: int, F: wp.mat33d, body: BodyArrays) -> wp.float64:
-        soft = body.softened[0]
+        soft = body.softened[body.clusters[q]]
         result = energy(F, soft[0], soft[1])
         if q >= body.point_volumes.shape[0]:
             result = energy(F, body.material[0][0], body.material[0][1]) - result
@@ -43,7 +43,7 @@ def make_row_stress(model: str) -> wp.Function:
 
     @wp.func
     def row_stress(q: int, F: wp.mat33d, body: BodyArrays) -> wp.mat33d:
-        soft = body.softened[0]
+        soft = body.softened[body.clusters[q]]
         result = stress(F, soft[0], soft[1])
         if q >= body.point_volumes.shape[0]:
             result = stress(F, body.material[0][0], body.material[0][1]) - result
@@ -60,7 +60,7 @@ def make_row_stiffness(model: str, plane: bool) -> wp.Function:
 
     @wp.func
     def row_stiffness(q: int, F: wp.mat33d, body: BodyArrays, scale: wp.float64) -> Stiffness:
-        soft = body.softened[0]
+        soft = body.softened[body.clusters[q]]
         if q >= body.point_volumes.shape[0]:
             full = body.material[0]
             return mean_stiffness(F, wp.vec2d(full[0], full[1]), soft, scale)

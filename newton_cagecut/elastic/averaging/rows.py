@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .clusters import cluster_points
-from .gradients import corrected_gradients
+from .fields import ClusterFields, cluster_fields
+from .gradients import CorrectedGradients, corrected_gradients
 
 
 class StrainRows(NamedTuple):
@@ -22,6 +23,10 @@ class StrainRows(NamedTuple):
     """Volumes, shape (row_count,) [m^3]."""
     anchors: np.ndarray
     """The vertex of greatest mean weight, of the clusters, shape (row_count - point_count,)."""
+    clusters: np.ndarray
+    """The cluster that a row is of, counted from 0, shape (row_count,)."""
+    fields: list[ClusterFields | None]
+    """Displacements of the clusters in use."""
 
 
 def strain_rows(
@@ -48,15 +53,25 @@ def strain_rows(
     points = weights @ vertices
     result = np.zeros((row_count, *gradients.shape[1:]))
     result[:count] = gradients
-    rows = corrected_gradients(vertices, points, weights, gradients[used, :, :dimension].astype(float))
-    result[used, :, :dimension] = rows
+    corrected = corrected_gradients(vertices, points, weights, gradients[used, :, :dimension].astype(float))
+    result[used, :, :dimension] = corrected.gradients
     room = row_count - count
     cluster = cluster_points(vertices, points, weights, volumes, piece[weights.argmax(axis=1)], room)
     shares = np.zeros((room, len(used)))
     shares[cluster, np.arange(len(used))] = volumes
     totals = shares.sum(axis=1)
     shares /= np.where(totals > 0.0, totals, 1.0)[:, None]
-    result[count:, :, :dimension] = np.einsum("cq,qjk->cjk", shares, rows)
-    all_volumes = np.zeros(row_count)
+    result[count:, :, :dimension] = np.einsum("cq,qjk->cjk", shares, corrected.gradients, optimize=True)
+    all_volumes, clusters = np.zeros(row_count), np.zeros(row_count, dtype=int)
     all_volumes[used], all_volumes[count:] = volumes, totals
-    return StrainRows(result, all_volumes, (shares @ weights).argmax(axis=1))
+    clusters[used], clusters[count:] = cluster, np.arange(room)
+    fields = [_fields(share, points, corrected) for share in shares[totals > 0.0]]
+    return StrainRows(result, all_volumes, (shares @ weights).argmax(axis=1), clusters, fields)
+
+
+def _fields(share: np.ndarray, points: np.ndarray, corrected: CorrectedGradients) -> ClusterFields | None:
+    """Displacements of a cluster, by the shares of its points."""
+    own = np.flatnonzero(share)
+    share, offset = share[own], points[own] - share[own] @ points[own]
+    seen, squares = (np.einsum("q,qkl->kl", share, part[own]) for part in (corrected.seen, corrected.squares))
+    return cluster_fields(np.einsum("q,qa,qb->ab", share, offset, offset), seen, squares)
