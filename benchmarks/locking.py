@@ -75,9 +75,7 @@ def _tetrahedra(shape: Shape, parts: int) -> skfem.MeshTet:
             ids, middle = [number(point) for point in box], number(box.mean(axis=0))
             for side in sides:
                 center = number(box[list(side)].mean(axis=0))
-                tetrahedra += [
-                    (middle, center, ids[a], ids[b]) for a, b in zip(side, side[1:] + side[:1], strict=True)
-                ]
+                tetrahedra += [(middle, center, ids[a], ids[b]) for a, b in zip(side, side[1:] + side[:1], strict=True)]
     return skfem.MeshTet(np.array(points).T, np.array(tetrahedra).T)
 
 

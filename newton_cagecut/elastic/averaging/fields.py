@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Energies of the quadratic displacements of a cluster: of those that the vertices see, and with those that they do not.
+"""Energies of quadratic displacements of a cluster, those that the vertices see and those that they do not.
 
 A cage's vertices lie on its surface. Those of a bar's section bend it, but cannot make it contract on one side and
 swell on the other: fields like y^2 are the same at all of them. The body is free to do so, as finite elements are by
