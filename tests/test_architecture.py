@@ -53,7 +53,10 @@ LEVELS = {
         ("point_checks",),
         ("placing",),
         ("coordinates",),
-        ("coordinates_warm_up",),
+        (
+            "closed_form_weights",
+            "coordinates_warm_up",
+        ),
         ("__init__",),
     ),
 }

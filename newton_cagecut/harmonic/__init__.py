@@ -5,6 +5,7 @@
 
 from .cache.domain import Domain
 from .cache.snapshot import CoordinatesSnapshot
+from .closed_form_weights import ClosedFormWeights, closed_form_weights
 from .coordinates import HarmonicCoordinates
 from .coordinates_warm_up import warm_up_coordinates
 from .journal import Journal
@@ -13,6 +14,7 @@ from .point_change import PointChange
 from .stats import UpdateStats
 
 __all__ = [
+    "ClosedFormWeights",
     "CoordinatesSnapshot",
     "Domain",
     "HarmonicCoordinates",
@@ -20,5 +22,6 @@ __all__ = [
     "PointChange",
     "UpdateStats",
     "check_options",
+    "closed_form_weights",
     "warm_up_coordinates",
 ]

@@ -56,7 +56,7 @@ class HarmonicCoordinates:
         cuttable: Whether to keep the walk cache that updates need (by default 64 bytes a walk, 32 in the plane).
         device: Where to walk; Warp's current device by default, or the domain's.
         correction: "harmonic" (control variates), "affine" (paper, equation 5), "none" (plain means) or "fitted": a
-            boundary fit, plus the mean of what it leaves over where walks land; gradients are the fit's alone.
+            boundary fit, plus the mean of what it leaves over where walks land, of gradients as far as it tells.
         bounds: Bounding volume of a walk: "dop18", "dop26", "aabb" or "sphere". Smaller ones send more walks to be
             walked again; the results are identical.
         distance: "grid" (candidates) or "all" (every wall): identical results. By default "grid", or the domain's.

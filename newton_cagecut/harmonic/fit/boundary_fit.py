@@ -23,6 +23,8 @@ from .point_rows import PointRows
 from .residual_sums import NODES
 
 _PANEL_SIZE = 0.6
+_SLOPES_INWARD = 1e-6
+"""How far inside of a face its gradients are evaluated, in the unit frame."""
 
 
 class BoundaryFit:
@@ -225,10 +227,14 @@ class BoundaryFit:
             rows: Gradients of layers at the points that are kept, if any.
         """
         if face is not None:
-            inward = np.where(face >= 0, -INWARD * self.frame.half_side, 0.0)
+            inward = np.where(face >= 0, -_SLOPES_INWARD * self.frame.half_side, 0.0)
             points = points + inward[:, None] * self.outward(face)
-        slopes = self.gradients(points, piece, rows) * self.frame.half_side
-        return make_slopes_exact(self._affine, piece, slopes) / self.frame.half_side
+        return self.exact_slopes(piece, self.gradients(points, piece, rows))
+
+    def exact_slopes(self, piece: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+        """Gradients [1/m] made exact: see ``slopes``. Those of points of piece -1 stay as they are."""
+        side = self.frame.half_side
+        return make_slopes_exact(self._affine, piece, slopes * side) / side
 
     def _on_faces(self, faces: list[int], unit: list[np.ndarray]) -> list[np.ndarray]:
         """Boundary functions of faces at points of theirs, shape (point_count, corner_count) each."""
@@ -267,6 +273,6 @@ class BoundaryFit:
             if rows is not None:
                 out[np.ix_(own, columns)] = rows.evaluated(fit, own)
             elif self.cage.dimension == 2:
-                out[np.ix_(own, columns)] = fit.gradients(unit[own]) if slopes else fit.values(unit[own])
+                out[np.ix_(own, columns)] = fit.gradients(unit[own]) if slopes else fit.inside(unit[own])
             else:
                 out[np.ix_(own, columns)] = fit.at(unit[own], self.batch, slopes=slopes)

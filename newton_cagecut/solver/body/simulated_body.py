@@ -340,7 +340,6 @@ class SimulatedBody:
             self.piece.assign(self.padded(self.cage.vertex_piece))
             self.system.stabilize(self.cage.vertices, self.cage.mesh.edges)
             self.system.average(self.cage.vertices)
-            self.system.refresh()
             self.show_masses()
 
     def show_masses(self) -> None:
