@@ -92,6 +92,7 @@ def _warping(grid: np.ndarray, half: np.ndarray, axes: np.ndarray) -> np.ndarray
 
 def _energies(volume: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """Twice the energies of pairs of fields, for each constant, shape (2, f, g)."""
-    shear = np.einsum("p,pfia,pgia->fg", volume, first + first.swapaxes(2, 3), second, optimize=True)
-    dilatations = (np.einsum("pfii->pf", part) for part in (first, second))
-    return np.stack([shear, np.einsum("p,pf,pg->fg", volume, *dilatations, optimize=True)])
+    weighted = volume[:, None, None, None] * (first + first.swapaxes(2, 3))
+    shear = np.tensordot(weighted, second, axes=((0, 2, 3), (0, 2, 3)))
+    dilatations = [np.trace(part, axis1=2, axis2=3) for part in (first, second)]
+    return np.stack([shear, (volume[:, None] * dilatations[0]).T @ dilatations[1]])
