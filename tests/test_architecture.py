@@ -43,6 +43,7 @@ KNOWN_ROOMS = {
 # What stands inside a room, from the bottom up: each line may know those above it and itself.
 LEVELS = {
     "harmonic": (
+        ("correction_choice",),
         ("journal", "launch", "options", "point_change", "stats"),
         ("walls",),
         ("walks",),

@@ -21,8 +21,8 @@ from harmonic_shapes import (
     points_inside,
     small_obstacle,
 )
-from newton_cagecut.cage import Cut
-from newton_cagecut.harmonic import HarmonicCoordinates, closed_form_weights
+from newton_cagecut.cage import Cage, Cut
+from newton_cagecut.harmonic import HarmonicCoordinates, choose_correction, closed_form_weights
 from newton_cagecut.harmonic.options import WalkOptions
 from newton_cagecut.section import Blade
 from plane_reference import PlaneReference, plane_reference
@@ -31,7 +31,7 @@ from plane_shapes import loops_of
 
 def fitted(cage, points, walks: int = 0, **options) -> HarmonicCoordinates:
     """Coordinates by the fit alone, or with walks."""
-    return HarmonicCoordinates(cage, points, walks, correction="fitted", **({"quads": "harmonic"} | options))
+    return HarmonicCoordinates(cage, points, walks, **({"correction": "fitted", "quads": "harmonic"} | options))
 
 
 def results(coordinates: HarmonicCoordinates) -> dict[str, np.ndarray]:
@@ -163,7 +163,14 @@ def test_walks_correct_gradients_where_they_can():
 def test_bias_of_tables():
     """Tables of what the fit leaves over change the weights by far less than it leaves over."""
     cut = Cut(box(), Blade([0.5, 0.5, 0.5], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]))
-    for cage, points in ((cut.advance(to=0.5).cage, points_inside(box(), 20, 3)), (slit_square(), around_the_tip(20))):
+    turn = np.linalg.qr(np.random.default_rng(6).normal(size=(3, 3)))[0]
+    turn[:, 0] *= np.linalg.det(turn)
+    turned = Cage((box().vertices @ turn).astype(np.float32), box().faces)  # planar as far as files tell
+    for cage, points in (
+        (cut.advance(to=0.5).cage, points_inside(box(), 20, 3)),
+        (slit_square(), around_the_tip(20)),
+        (turned, points_inside(box(), 20, 3) @ turn),
+    ):
         found = closed_form_weights(cage, points, 64, 5, quads="harmonic" if cage.dimension == 3 else None)
         told = np.sqrt(np.mean(found.squared_errors))
         assert np.sqrt(np.mean(found.table_bias**2)) < 0.5 * told
@@ -208,6 +215,25 @@ def test_other_edits():
     walked = copies(coordinates.cage, points, 1024, 12, quads="harmonic")[0]
     error = walked.std(axis=0, ddof=1) / np.sqrt(12)
     assert np.sqrt(np.mean((coordinates.weights - walked.mean(axis=0)) ** 2)) < np.sqrt(np.mean(error**2)) + 1e-3
+
+
+def test_choice_by_size(tmp_path):
+    """By "auto" a cage that a fit is quick for has one, others are walked for; a file keeps what was chosen."""
+    points = points_inside(box(), 6, 0)
+    chosen = fitted(box(), points, 4, correction="auto")
+    assert_identical(results(chosen), results(fitted(box(), points, 4)))
+    path = tmp_path / "chosen.cagecut"
+    chosen.save(path)
+    loaded = HarmonicCoordinates.load(path, chosen.cage, points, correction="auto")
+    assert_identical(results(loaded), results(chosen))
+    large = box().triangulated()
+    while sum(map(len, large.faces)) <= 2000:
+        large = large.refine()
+    assert choose_correction(large).correction == "harmonic"
+    found = HarmonicCoordinates(large, points, 8, correction="auto")
+    assert np.array_equal(found.weights, HarmonicCoordinates(large, points, 8).weights)
+    with pytest.raises(ValueError, match="walks must be a whole number from 1 "):
+        HarmonicCoordinates(large, points, 0, correction="auto")
 
 
 def test_options():

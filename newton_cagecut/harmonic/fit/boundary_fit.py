@@ -187,10 +187,26 @@ class BoundaryFit:
         if self.cage.dimension == 3:
             return self._kept_residuals(len(corners))
         places = sum(hats[:, k, None] * corners[:, None, k] for k in range(2)).reshape(-1, 2)
-        owner = np.repeat(face, len(hats))
-        inside = places - INWARD * self.frame.half_side * self.outward(owner)
-        found = self.boundary(places, owner) - self.values(inside, self.cage.face_piece[owner])
-        return found.reshape(len(face), len(hats), -1)
+        return self.residuals_at(places, np.repeat(face, len(hats))).reshape(len(face), len(hats), -1)
+
+    def residuals_at(self, points: np.ndarray, face: np.ndarray) -> np.ndarray:
+        """What the fit leaves over at points of faces, put onto these, shape (point_count, cage.vertex_count).
+
+        Args:
+            points: Points on faces, but for rounding [m], shape (point_count, dimension).
+            face: The face of each, shape (point_count,).
+        """
+        unit, outward = self.frame.to_unit(points), self.outward(face)
+        if self.cage.dimension == 2:
+            start = self.frame.to_unit(self.cage.vertices)[np.asarray(self.cage.faces)[face, 0]]
+            unit -= ((unit - start) * outward).sum(axis=1, keepdims=True) * outward
+        else:
+            for number in np.unique(face).tolist():
+                own = face == number
+                unit[own] = self._planes.to_space(number, self._planes.to_plane(number, unit[own]))
+                outward[own] = self._planes.outward[number]
+        inside = (unit - INWARD * outward) * self.frame.half_side + self.frame.center
+        return self.boundary(points, face) - self.values(inside, self.cage.face_piece[face])
 
     def _kept_residuals(self, cell_count: int) -> np.ndarray:
         """Residuals in space, from layers that the memory keeps."""

@@ -13,7 +13,6 @@ import numpy as np
 import warp as wp
 
 from ..fit.boundary_fit import BoundaryFit
-from ..fit.fit_memory import INWARD
 from ..launch import launch
 from ..walks.random import make_direction
 from ..walls.frame import UnitFrame
@@ -61,13 +60,8 @@ def landing_residuals(
         radius: Distance of the points from the walls in the frame, shape (n,).
     """
     cage = fit.cage
-    face = landings["face"]
     place = landings["point"][:, : cage.dimension].astype(np.float64) * frame.half_side + frame.center
-    corner = cage.vertices[[loop[0] for loop in cage.faces]][face]
-    outward = fit.outward(face)
-    place -= ((place - corner) * outward).sum(axis=1, keepdims=True) * outward  # they are rounded to float32
-    inside = place - INWARD * fit.frame.half_side * outward
-    residual = fit.boundary(place, face) - fit.values(inside, cage.face_piece[face])
+    residual = fit.residuals_at(place, landings["face"])
     residual = residual.reshape(len(indices), walks, -1)
     values = residual.mean(axis=1)
     spread = residual - values[:, None]
