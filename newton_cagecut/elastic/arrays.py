@@ -77,12 +77,10 @@ class BodyArrays:
     """Gradients of the weights, one a point and vertex [1/m]."""
     point_volumes: wp.array[float]
     """Volumes, one a point [m^3]."""
-    averaged: wp.array[int]
-    """Nonzero if strain is averaged over clusters of points, shape (1,)."""
     clusters: wp.array[int]
-    """The cluster that a row is of, one a row."""
+    """The cluster that a row is of, one a row; none if strain is not averaged."""
     softened: wp.array[wp.vec2d]
-    """Lame's constants mu and lambda of the material at the points, one a cluster [Pa]."""
+    """Lame's constants mu and lambda of the material at the points, one a cluster [Pa]; likewise."""
     gradients: wp.array2d[wp.vec3]
     """Gradients that strain is taken with, of the points, then of the clusters, one a row and vertex [1/m]."""
     volumes: wp.array[float]
@@ -179,6 +177,7 @@ def make_body_arrays(
     rotation: wp.array | None,
     piece: wp.array | None,
     plane: bool,
+    averaged: bool = False,
 ) -> BodyArrays:
     """The arrays of a body: those given, in place, and zeros for the others; see ``ReducedSystem``.
 
@@ -202,12 +201,13 @@ def make_body_arrays(
         _check(given)
         for name, array in given.items():
             setattr(body, {"gradients": "point_gradients", "volumes": "point_volumes"}.get(name, name), array)
-        rows = points + max(capacity // _CLUSTER_VERTICES, 1)
-        body.gradients = wp.zeros((rows, capacity), dtype=wp.vec3)
-        body.volumes = wp.zeros(rows, dtype=float)
-        body.averaged = wp.zeros(1, dtype=int)
-        body.clusters = wp.zeros(rows, dtype=int)
-        body.softened = wp.zeros(rows - points, dtype=wp.vec2d)
+        rows = points + (max(capacity // _CLUSTER_VERTICES, 1) if averaged else 0)
+        body.gradients, body.volumes = body.point_gradients, body.point_volumes
+        if averaged:
+            body.gradients = wp.zeros((rows, capacity), dtype=wp.vec3)
+            body.volumes = wp.zeros(rows, dtype=float)
+            body.clusters = wp.zeros(rows, dtype=int)
+            body.softened = wp.zeros(rows - points, dtype=wp.vec2d)
         if plane:
             body.normal = wp.zeros(1, dtype=wp.vec3d)
         body.piece_count = wp.ones(1, dtype=int)

@@ -32,16 +32,6 @@ def find_anchors(body: BodyArrays):
 
 
 @wp.kernel(enable_backward=False)
-def take_points(body: BodyArrays):
-    """Gradients and volumes of the points as they are, for strain that is not averaged."""
-    q, j = wp.tid()
-    if body.averaged[0] == 0:
-        body.gradients[q, j] = body.point_gradients[q, j]
-        if j == 0:
-            body.volumes[q] = body.point_volumes[q]
-
-
-@wp.kernel(enable_backward=False)
 def assemble_mass(body: BodyArrays):
     """Consistent mass matrix with the stabilising inertia; zero in the spare rows and columns."""
     i, j = wp.tid()
@@ -83,7 +73,6 @@ def record_masses(body: BodyArrays) -> tuple[wp.Launch, ...]:
     capacity, points, device = body.rest.shape[0], body.point_volumes.shape[0], body.rest.device
     return (
         launch_later(find_anchors, points, [body], device),
-        launch_later(take_points, (points, capacity), [body], device),
         launch_later(assemble_mass, (capacity, capacity), [body], device),
         launch_later(sum_mass, capacity, [body], device),
         launch_later(count_pieces, 1, [body], device),

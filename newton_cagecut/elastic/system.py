@@ -52,6 +52,7 @@ class ReducedSystem:
             given.
         piece: The piece that a vertex belongs to, counted from 0, shape (vertex_capacity,) int; all one if not given.
         thickness: Thickness of a plane body [m]; the body is solid if not given.
+        averaged: Whether strain is averaged over clusters of points, against locking, by :meth:`stabilize`.
         integrator: One of ``INTEGRATORS``: ``"tr_bdf2"`` or ``"backward_euler"`` (see ``stages/scheme.py``), or
             ``"paper"`` for the paper's single step.
         newton_iterations: Linear solves in each stage; the paper's has one.
@@ -75,6 +76,7 @@ class ReducedSystem:
         rotation: wp.array | None = None,
         piece: wp.array | None = None,
         thickness: float | None = None,
+        averaged: bool = False,
         integrator: str = "tr_bdf2",
         newton_iterations: int = 1,
         limits: SolveLimits | None = None,
@@ -93,7 +95,9 @@ class ReducedSystem:
             rotation=rotation,
             piece=piece,
             plane=self.is_plane,
+            averaged=averaged,
         )
+        self.is_averaged = averaged
         self.rest, self.weights = body.rest, body.weights
         self.gradients, self.volumes = body.point_gradients, body.point_volumes
         self.vertex_count, self.fixed, self.rotation, self.piece = (
@@ -145,14 +149,8 @@ class ReducedSystem:
         self._soften()
         self.refresh()
 
-    def average(self, vertices: np.ndarray) -> None:
-        """Average strain over clusters of points, against locking, and refresh; see ``averaging``.
-
-        To be called anew after each edit.
-
-        Args:
-            vertices: The cage's vertices in use in its rest frame, shape (n, 3), or (n, 2) of a plane body [m].
-        """
+    def _average(self, vertices: np.ndarray) -> None:
+        """Average strain over clusters of points; see ``averaging``."""
         body, count = self.arrays, len(vertices)
         inputs = [array.numpy()[:, :count] for array in (self.weights, self.gradients)]
         rows = strain_rows(vertices, *inputs, self.volumes.numpy(), self.piece.numpy()[:count], body.volumes.shape[0])
@@ -162,21 +160,23 @@ class ReducedSystem:
         body.volumes.assign(rows.volumes.astype(np.float32))
         body.anchors[self.point_count :].assign(rows.anchors.astype(np.int32))
         body.clusters.assign(rows.clusters.astype(np.int32))
-        body.averaged.fill_(1)
         self._fields = rows.fields
         self._soften()
-        self.refresh()
 
     def _soften(self) -> None:
         """Set the constants of the material at the points."""
         lame = self.material.lame
+        if not self.is_averaged:
+            return
         softened = np.tile(lame, (self.arrays.softened.shape[0], 1))
         for row, fields in zip(softened, self._fields, strict=False):
             row[:] = softened_moduli(*lame, fields)
         self.arrays.softened.assign(softened)
 
     def stabilize(self, vertices: np.ndarray, edges: np.ndarray) -> None:
-        """Tie vertices that the quadrature hardly sees to their neighbours; call :meth:`refresh` afterwards.
+        """Tie vertices that the quadrature hardly sees to their neighbours, and average strain; then :meth:`refresh`.
+
+        To be called anew after each edit. Strain is averaged if the system was made so.
 
         Args:
             vertices: The cage's vertices in use in its rest frame, shape (n, 3), or (n, 2) of a plane body [m].
@@ -189,6 +189,8 @@ class ReducedSystem:
         stiffness, mass = stabilize(vertices, edges, weights, gradients, volumes, thickness=thickness)
         _assign_block(self.stabilizing_stiffness, stiffness)
         self._tied_mass = mass
+        if self.is_averaged:
+            self._average(vertices)
 
     def refresh(self) -> None:
         """Bring masses, anchors and lanes up to date after an edit of weights, gradients, volumes or the count."""

@@ -20,6 +20,15 @@ from ..stiffness import Stiffness, make_stiffness_function
 wp.set_module_options({"enable_backward": False})
 
 
+@wp.func
+def point_constants(q: int, body: BodyArrays) -> wp.vec2d:
+    """Lame's constants of the material at the points of a row's cluster."""
+    constants = wp.vec2d(body.material[0][0], body.material[0][1])
+    if body.clusters.shape[0] > 0:
+        constants = body.softened[body.clusters[q]]
+    return constants
+
+
 @functools.cache
 def make_row_energy(model: str) -> wp.Function:
     """The function (row, F, body) -> energy density."""
@@ -27,7 +36,7 @@ def make_row_energy(model: str) -> wp.Function:
 
     @wp.func
     def row_energy(q: int, F: wp.mat33d, body: BodyArrays) -> wp.float64:
-        soft = body.softened[body.clusters[q]]
+        soft = point_constants(q, body)
         result = energy(F, soft[0], soft[1])
         if q >= body.point_volumes.shape[0]:
             result = energy(F, body.material[0][0], body.material[0][1]) - result
@@ -43,7 +52,7 @@ def make_row_stress(model: str) -> wp.Function:
 
     @wp.func
     def row_stress(q: int, F: wp.mat33d, body: BodyArrays) -> wp.mat33d:
-        soft = body.softened[body.clusters[q]]
+        soft = point_constants(q, body)
         result = stress(F, soft[0], soft[1])
         if q >= body.point_volumes.shape[0]:
             result = stress(F, body.material[0][0], body.material[0][1]) - result
@@ -60,7 +69,7 @@ def make_row_stiffness(model: str, plane: bool) -> wp.Function:
 
     @wp.func
     def row_stiffness(q: int, F: wp.mat33d, body: BodyArrays, scale: wp.float64) -> Stiffness:
-        soft = body.softened[body.clusters[q]]
+        soft = point_constants(q, body)
         if q >= body.point_volumes.shape[0]:
             full = body.material[0]
             return mean_stiffness(F, wp.vec2d(full[0], full[1]), soft, scale)

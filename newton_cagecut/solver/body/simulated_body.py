@@ -339,7 +339,7 @@ class SimulatedBody:
         if self.system is not None:
             self.piece.assign(self.padded(self.cage.vertex_piece))
             self.system.stabilize(self.cage.vertices, self.cage.mesh.edges)
-            self.system.average(self.cage.vertices)
+            self.system.refresh()
             self.show_masses()
 
     def show_masses(self) -> None:
@@ -432,9 +432,7 @@ class SimulatedBody:
             rotation=wp.array([self._frame.rotation], dtype=wp.mat33, device=self.device),
             thickness=self.definition.thickness,
             piece=self.piece,
-            integrator=self.config.integrator,
-            newton_iterations=self.config.newton_iterations,
-            limits=self.config.limits,
+            **self.config.system_options,
         )
 
     def padded(self, mask: np.ndarray) -> np.ndarray:
