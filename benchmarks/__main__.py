@@ -10,7 +10,18 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-NAMES = ("accuracy", "distance", "fingerprint", "locality", "locking", "pictures", "solve", "table1", "topology")
+NAMES = (
+    "accuracy",
+    "distance",
+    "fingerprint",
+    "locality",
+    "locking",
+    "pages",
+    "pictures",
+    "solve",
+    "table1",
+    "topology",
+)
 
 
 def benchmark_list() -> str:

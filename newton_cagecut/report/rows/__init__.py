@@ -4,6 +4,10 @@
 
 from __future__ import annotations
 
+from ..cuts.bounds_row import BoundsRow
+from ..cuts.course import CourseRow
+from ..cuts.locality import LocalityRow
+from ..cuts.replay import ReplayRow
 from ..measurement import Row
 from .elements_row import ElementsRow
 from .epsilon import EpsilonRow
@@ -22,5 +26,9 @@ ROWS: tuple[Row, ...] = (
     EpsilonRow(),
     QuadsRow(),
     PaperTableRow(),
+    ReplayRow(),
+    LocalityRow(),
+    BoundsRow(),
+    CourseRow(),
     GrowthRow(),
 )
