@@ -86,7 +86,7 @@ def test_bodies_move_as_each_alone():
 
 @pytest.mark.parametrize(("young", "dt"), [(1e4, FRAME), (1e5, FRAME / 8.0)])
 def test_two_lobed_body_that_draws_in_turns_faster(young: float, dt: float):
-    """Two lobes, pulled apart by 40 % and spinning, draw in: the angular momentum stays within 2 %, the spin grows by a fifth.
+    """Two spinning lobes, pulled apart by 40 %, draw in: L stays within 2 %, the spin grows by a fifth at least.
 
     The steps resolve the drawing in: the trapezoidal rule's forces at the start do not turn with the body.
     """
