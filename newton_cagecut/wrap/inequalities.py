@@ -76,6 +76,7 @@ class Inequalities:
         size = np.asarray(abs(matrix).sum(axis=1)).reshape(-1)
         missed = bounds / np.maximum(size, np.finfo(float).tiny)  # the move that a row asks for, at least
         taken = np.zeros(self._count, dtype=bool)
+        moves = np.zeros(unknowns)
         while True:
             waiting = np.flatnonzero(~taken & (missed > -step if not taken.any() else missed > _SLACK))
             if len(waiting) == 0:
