@@ -10,7 +10,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-NAMES = ("accuracy", "distance", "fingerprint", "locality", "pictures", "solve", "table1", "topology")
+NAMES = ("accuracy", "distance", "fingerprint", "locality", "pictures", "solve", "table1", "topology", "wrap")
 
 
 def benchmark_list() -> str:

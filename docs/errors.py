@@ -132,7 +132,9 @@ CASES: dict[str, dict[str, Case]] = {
         "a face turned over": lambda f: cage(faces=(*QUADS[:5], QUADS[5][::-1])),
         "inside out": lambda f: cage(faces=tuple(face[::-1] for face in QUADS)),
         "a quad that is not planar": lambda f: cage(changed(BOX, 7, (1.3, 1.2, 1.4))),
-        "a cage that crosses itself": lambda f: cage(changed(BOX, 7, (0.2, -0.4, -0.5)), TRIANGLES),
+        "a cage that crosses itself": lambda f: cage(
+            np.concatenate([BOX, BOX + 0.5]), (*QUADS, *(tuple(v + 8 for v in face) for face in QUADS))
+        ),
         "a face three times": lambda f: cage(faces=(*QUADS, QUADS[0], QUADS[0])),
         "a tolerance of a half": lambda f: cage(tolerance=0.5),
     },
@@ -158,7 +160,7 @@ CASES: dict[str, dict[str, Case]] = {
     "Blades and cuts": {
         "an edge along the direction": lambda f: cagecut.Blade(**{**BLADE, "edge": (0.0, 0.0, 2.0)}),
         "a direction of length zero": lambda f: cagecut.Blade(**{**BLADE, "direction": (0.0, 0.0, 0.0)}),
-        "a blade that misses the cage": lambda f: cut_of(cagecut.Blade(**{**BLADE, "origin": (5.0, 0.0, 2.0)}), 0.2),
+        "a blade of width below zero": lambda f: cagecut.Blade(**BLADE, width=-0.1),
         "a depth that is no number": lambda f: cut_of(cagecut.Blade(**BLADE), "deep"),
         "a blade that goes back": lambda f: cut_of(cagecut.Blade(**BLADE), 0.5, 0.3),
     },

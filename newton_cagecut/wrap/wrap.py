@@ -11,6 +11,7 @@ keep their distance from the whole mesh, the smaller is handed on.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -32,7 +33,7 @@ _OFFSETS = (1e-3, 0.25)
 _TRIES = 8
 _FIRST_OFFSETS = (0.03, 3.0)  # of the first wide shell that is decimated: of the mesh's diagonal, of the offset
 _NARROW = (0.5, 1.0)  # of the narrow shell: its offset, of the wide one's, and its alpha, of its own offset
-_CLOSE = 1.35  # volume of a cage, of that of a wrap close to the mesh, with which no other shell is tried
+_CLOSE = (1.3, 12.0)  # volume of a cage, of a close wrap's, with which no other shell is tried; over its faces, more
 _WIDER = 1.6  # offset of the next try's shell
 _SURPLUS = 1.1  # faces that decimation may leave, of those asked for
 _SHARES = (1.0, 0.95, 1.1, 0.9, 0.85)  # of the faces asked for, that decimation is tried with
@@ -81,6 +82,7 @@ def wrap_cage(
     surface = Surface(points, triangles, weld=-1.0)
     face_count, offset = checked_face_count(face_count), checked_offset(offset)
     separate, polygons = as_flag(separate, "separate"), as_flag(polygons, "polygons")
+    progress = None if progress is None else as_flag(progress, "progress")
     import_meshlab()
     used, corner = np.unique(surface.triangles, return_inverse=True)
     with wrap_progress(progress) as tick:
@@ -142,7 +144,7 @@ class _Mesh:
         self.held, self.least_volume = joined_shells(wraps)[0], sum(Shell(*wrap).volume for wrap in wraps)
 
     def best_cage(self, face_count: int, polygons: bool) -> Cage:
-        """Make tries at a cage, and return the smaller of the first two, or the first that comes to something.
+        """Make tries from wide shells until one comes to a cage, and one from a narrow shell if that is far too large.
 
         Args:
             face_count: Its faces.
@@ -151,47 +153,50 @@ class _Mesh:
         Raises:
             ValueError: All tries came to nothing.
         """
+        offset = min(max(_FIRST_OFFSETS[0], _FIRST_OFFSETS[1] * self.offset), 0.4 * self.gap)
         best, reason = None, ""
         for number in range(_TRIES):
-            if number > 1 and best is not None:
-                break
             try:
-                shell = self.shell(face_count, number)
-                cage = self.checked_cage(shell, shell.triangles)
+                best = self._try(face_count, offset * _WIDER**number, alpha=_ALPHA, margins=1 + number)
+                break
             except ValueError as error:
                 reason = str(error)
-                continue
-            if best is None or cage.volume < best[1].volume:
-                best = shell, cage
-            if cage.volume < _CLOSE * self.least_volume * self.diagonal**3:
-                break
         if best is None:
             raise ValueError(
                 f"no cage of about {face_count} faces was found around the mesh in {_TRIES} tries; in the last one "
                 f"{reason}. Allow more faces or another offset"
             )
+        close = _CLOSE[0] + _CLOSE[1] / face_count
+        if best[1].volume > close * self.least_volume * self.diagonal**3:
+            narrow = max(_NARROW[0] * offset, min(1.2 * self.offset, offset))
+            with suppress(ValueError):
+                best = min(
+                    best,
+                    self._try(face_count, narrow, alpha=_NARROW[1], margins=1, many=True),
+                    key=lambda found: found[1].volume,
+                )
         return self._with_polygons(*best) if polygons else best[1]
 
-    def shell(self, face_count: int, number: int) -> Shell:
-        """Make one try at a shell.
+    def _try(
+        self, face_count: int, offset: float, *, alpha: float, margins: int, many: bool = False
+    ) -> tuple[Shell, Cage]:
+        """Make one try at a cage.
 
         Args:
             face_count: Its faces.
-            number: Number of the try: the first is a wide shell, then come a narrow one and wider ones.
+            offset: Of the shell that is decimated.
+            alpha: Of that shell, of its offset.
+            margins: Distances that the shell keeps beyond the offset that is asked for, in units of the sampling.
+            many: Whether decimation is tried with several numbers of faces.
 
         Raises:
             ValueError: It came to nothing; the text says how.
         """
-        self._tick(f"shell {number + 1}")
-        offset = min(max(_FIRST_OFFSETS[0], _FIRST_OFFSETS[1] * self.offset), 0.4 * self.gap)
-        wider = max(number - 1, 0)
-        if number == 1:
-            offset, alpha = max(_NARROW[0] * offset, min(1.2 * self.offset, offset)), _NARROW[1]
-        else:
-            offset, alpha = offset * _WIDER**wider, _ALPHA
+        self._tick("shell")
         wraps = [self._wrap(part, offset, alpha=alpha) for part in self.parts]
-        shell = _coarse(wraps, face_count)
-        return self._tightened(shell, margin=self.offset + 0.6 * self.spacing * (1 + wider))
+        shell = _coarse(wraps, face_count, _SHARES if many else _SHARES[:1])
+        shell = self._tightened(shell, margin=self.offset + 0.6 * self.spacing * margins)
+        return shell, self.checked_cage(shell, shell.triangles)
 
     def checked_cage(self, shell: Shell, faces: Sequence[Sequence[int]]) -> Cage:
         """Return a shell as a cage around the mesh.
@@ -234,10 +239,10 @@ class _Mesh:
         return alpha_wrap(*part, alpha=min(max(least_alpha, alpha * offset), _LARGEST_ALPHA), offset=offset)
 
 
-def _coarse(wraps: list[tuple[np.ndarray, np.ndarray]], face_count: int) -> Shell:
+def _coarse(wraps: list[tuple[np.ndarray, np.ndarray]], face_count: int, shares: Sequence[float]) -> Shell:
     """Return a shell of few triangles that does not meet itself, which decimation to one number may and others not."""
     areas = np.array([Shell(*wrap).area for wrap in wraps])
-    for share in _SHARES:
+    for share in shares:
         wanted = max(int(share * face_count), 4 * len(wraps))
         counts = 4 + 2 * np.floor(0.5 * (wanted - 4 * len(wraps)) * areas / areas.sum()).astype(int)
         counts = [wanted] if len(wraps) == 1 else counts.tolist()
