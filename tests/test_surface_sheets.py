@@ -14,6 +14,7 @@ from newton_cagecut.cage import Cut
 from newton_cagecut.section import Blade
 from newton_cagecut.surface import Surface, SurfaceCut
 from odd_meshes import CLOSED, PARTLY_OPEN, box_mesh, box_with_doubled_triangles, hemisphere, joined, sphere_mesh
+from solver_scenes import make_solver
 from surface_shapes import check_closed
 
 BLADES = (
@@ -192,3 +193,34 @@ def test_bodies_warn_and_refuse_before_walks():
     with pytest.warns(UserWarning, match="edges, the first .* have one triangle: where a cut meets"):
         cagecut.add_cage_body(builder, box(), hemisphere(), walks=4, quadrature=10)
     cagecut.add_cage_body(builder, box(), hemisphere(), walks=4, quadrature=10, cuttable=False)
+
+
+@pytest.mark.filterwarnings("ignore:the mesh of the body")
+@pytest.mark.parametrize("name", ["boxes_at_an_edge", "boxes_at_a_face"])
+def test_sheets_that_touch_move_as_one(name):
+    """Points of two sheets at one place stay there under a twist, before a cut and on each side of it after."""
+    points, triangles = CLOSED[name][0]()
+    _, solver, *states = make_solver(surface=Surface(points, triangles), walks=16, quadrature=0, seed=1)
+    cut = solver.begin_cut(0, BLADES[1])
+    for share in (0.0, 0.6, 1.0):
+        if share:
+            solver.advance_cut(cut, to=share * cut.length, states=states)
+        body, q = solver.bodies[0], states[0].particle_q.numpy()
+        corners = body.cage.vertices
+        turn = 0.7 * (corners[:, 2] - 0.5)
+        twisted = corners.copy()
+        twisted[:, 0] += (
+            np.cos(turn) * (corners[:, 0] - 0.5) - np.sin(turn) * (corners[:, 1] - 0.5) + 0.5 - corners[:, 0]
+        )
+        q[: len(corners)] = body.to_world(twisted)
+        states[0].particle_q.assign(q)
+        surface, moved = body.surface, solver.surface(states[0])[0]
+        _, place, count = np.unique(
+            np.column_stack([surface.points, surface.point_key]), axis=0, return_inverse=True, return_counts=True
+        )
+        together = 0
+        for number in np.flatnonzero(count > 1):
+            mine = place.reshape(-1) == number
+            together += 1
+            assert np.ptp(moved[mine], axis=0).max() == 0.0
+        assert together >= 2

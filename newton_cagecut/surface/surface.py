@@ -112,6 +112,7 @@ class Surface:
         triangle_cap: np.ndarray,
         cap_side: np.ndarray,
         attributes: Attributes,
+        is_parted: bool,
     ) -> Surface:
         """A surface that a cut made, taken as it is."""
         surface = cls.__new__(cls)
@@ -119,7 +120,7 @@ class Surface:
         surface.site_points, surface.site_key = points if point_site is None else sites, site_key
         surface.uvs, surface.own_corner_uvs, surface.normals = uvs, own_corner_uvs, normals
         surface.triangle_cap, surface.cap_side, surface.attributes = triangle_cap, cap_side, attributes
-        surface._repairs = Repairs()
+        surface.is_parted, surface._repairs = is_parted, Repairs()
         surface._freeze()
         return surface
 
@@ -186,6 +187,23 @@ class Surface:
         if self.point_site is None:
             return np.arange(self.point_count)
         return np.unique(self.point_site, return_index=True)[1]
+
+    @cached_property
+    def point_place(self) -> np.ndarray | None:
+        """Site with which each point moves, shape (point_count,); None if it is the one of the same number.
+
+        Sheets that touch have sites of their own at one place, with walks of their own; the points there move with the
+        first of them, until a cut takes them apart, so that no gap opens.
+        """
+        if not self.is_parted:
+            return self.point_site
+        key = np.column_stack([self.site_points, self.site_key])
+        own = np.flatnonzero(self.on_several_cuts(np.arange(self.site_count)))
+        apart = np.zeros(self.site_count)
+        apart[own] = 1.0 + own
+        _, first, place = np.unique(np.column_stack([key, apart]), axis=0, return_index=True, return_inverse=True)
+        place = first[place.reshape(-1)]
+        return place if self.point_site is None else place[self.point_site]
 
     @property
     def point_key(self) -> np.ndarray:

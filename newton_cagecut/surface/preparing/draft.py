@@ -52,6 +52,7 @@ class Draft:
         self.cap_side = np.zeros(len(self.triangles), dtype=np.int8)
         self.site_key = as_labels(point_key, "point_key", len(points))
         self.site_points, self.point_site = points, None
+        self.is_parted = False
         self.repairs = Repairs()
         self._number = np.arange(len(self.triangles))
 
@@ -67,7 +68,7 @@ class Draft:
             weld: Distance up to which ends of open edges lie on each other [m].
         """
         whole = (self.triangles != np.roll(self.triangles, 1, axis=1)).all(axis=1)
-        self._leave_out(~whole, "triangle {} uses a point twice and is left out", "{} triangles use a point twice")
+        self._leave_out(~whole, "uses a point twice and is left out", "use a point twice and are left out")
         if len(whole) and not whole.any():
             raise ValueError("no triangle of the surface has three different points; there is no surface")
         self._join_seams(as_weld(weld, self.points))
@@ -102,24 +103,26 @@ class Draft:
     def _leave_out(self, which: np.ndarray, one: str, several: str) -> None:
         """Leave out triangles, a mask, and note why."""
         if which.any():
-            self.repairs.add(self._number[which], one, several)
+            self.repairs.add(self._number[which], "triangle", one, several)
             self._keep_triangles(~which)
 
     def _part_sheets(self) -> None:
         """Make triangles sheets, each with points of its own."""
         again = repeated(self._corners)
-        self._leave_out(again, "triangle {} is there twice and is left out", "{} triangles are there twice")
+        self._leave_out(again, "is there twice and is left out", "are there twice and are left out")
         sheets = find_sheets(self._mesh)
         turned = np.flatnonzero(sheets.turned)
         self.repairs.add(
             self._number[turned],
-            "triangle {} ran the other way than those around it and is turned",
-            "{} triangles ran the other way than those around them and are turned",
+            "triangle",
+            "ran the other way than those around it and is turned",
+            "ran the other way than those around them and are turned",
         )
         self.repairs.add(
             sheets.branches,
-            "edge {} has three triangles or more, which are parted into sheets",
-            "{} edges have three triangles or more, which are parted into sheets",
+            "edge",
+            "has three triangles or more, which are parted into sheets",
+            "have three triangles or more, which are parted into sheets",
         )
         order = np.tile(np.arange(3), (len(self.triangles), 1))
         order[turned] = [0, 2, 1]
@@ -143,7 +146,8 @@ class Draft:
         point_site = np.arange(len(self.points)) if self.point_site is None else self.point_site
         parting = Parting.of(self.triangles, point_site, len(self.site_points), fan)
         self.triangles = parting.triangles
-        if len(parting.site) == len(self.site_points):
+        self.is_parted = len(parting.site) > len(self.site_points)
+        if not self.is_parted:
             return
         self.site_points, self.site_key = self.site_points[parting.site], self.site_key[parting.site]
         for name in ("points", "uvs", "normals"):

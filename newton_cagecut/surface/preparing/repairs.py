@@ -14,15 +14,17 @@ class Repairs:
         self.notes: list[str] = []
         """The sentences."""
 
-    def add(self, which: np.ndarray, one: str, several: str) -> None:
+    def add(self, which: np.ndarray, kind: str, one: str, several: str) -> None:
         """Note a repair, if there was any.
 
         Args:
             which: Numbers of what was repaired, shape (count,), or (count, 2) of edges.
-            one: What is said of one, with its number at ``{}``.
-            several: What is said of several, with their count at ``{}``.
+            kind: What it is, "triangle" or "edge".
+            one: What is said of one.
+            several: What is said of several.
         """
-        if len(which):
-            number = which[0] if which.ndim == 1 else tuple(which[0].tolist())
-            text = one.format(number)
-            self.notes.append(text if len(which) == 1 else f"{several.format(len(which))}; the first: {text}")
+        if not len(which):
+            return
+        number = which[0] if which.ndim == 1 else tuple(which[0].tolist())
+        text = f"{kind} {number} {one}" if len(which) == 1 else f"{len(which)} {kind}s {several}, the first {number}"
+        self.notes.append(text)
