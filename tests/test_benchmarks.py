@@ -4,11 +4,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from PIL import Image
 
-from benchmarks import accuracy, locality, pictures, table1
+from benchmarks import accuracy, locality, pictures, revisions, table1
 from benchmarks.__main__ import NAMES
 from benchmarks.__main__ import main as run_benchmark
 from benchmarks.comparison import compared
@@ -83,6 +85,32 @@ def test_runs_are_compared(tmp_path, capsys):
     lines = capsys.readouterr().out.split(f"compared with {kept}")[1].splitlines()
     assert any(line.startswith("jelly") and "recompute ms" in line for line in lines)
     assert not any("re-walk %" in line or "(paper)" in line for line in lines)
+
+
+def test_runs_are_compared_with_a_revision(tmp_path, monkeypatch):
+    """The benchmark is run in a checkout of the revision, with the other options; the checkout goes again."""
+    made = []
+
+    def run(command: list[str], **options: object) -> SimpleNamespace:
+        made.append(command)
+        if "benchmarks" in command:
+            assert options["env"]["PYTHONPATH"].startswith(str(tmp_path / "tree"))
+            (tmp_path / "kept.json").write_text("[]")
+        return SimpleNamespace(returncode=0, stdout="abc" if "rev-parse" in command else "")
+
+    monkeypatch.setattr(revisions.subprocess, "run", run)
+    given = ["--walks", "2", "--compare", "v1", "--json", "now.json"]
+    kept = str(tmp_path / "kept.json")
+    assert revisions.with_kept("table1", given, tmp_path) == [*given[:3], kept, *given[4:]]
+    assert made[2][1:] == ["-m", "benchmarks", "table1", "--walks", "2", "--json", kept]
+    assert [command[3:5] for command in made[1::2]] == [["worktree", "add"], ["worktree", "remove"]]
+    assert revisions.with_kept("table1", ["--compare", kept], tmp_path) == ["--compare", kept]
+
+
+def test_unknown_revision_is_refused(capsys):
+    """What is neither a file nor a revision is named, and nothing is run."""
+    assert run_benchmark(["table1", "--compare", "no-such-revision"]) == 2
+    assert "no-such-revision: there is neither such a file nor such a revision" in capsys.readouterr().err
 
 
 def test_comparison_matches_rows_by_their_names():

@@ -9,6 +9,7 @@ from ..cuts.course import CourseRow
 from ..cuts.locality import LocalityRow
 from ..cuts.replay import ReplayRow
 from ..measurement import Row
+from .bias import BiasRow
 from .elements_row import ElementsRow
 from .epsilon import EpsilonRow
 from .error_row import ErrorRow
@@ -23,6 +24,7 @@ ROWS: tuple[Row, ...] = (
     ErrorRow(),
     ElementsRow(),
     ExactRow(),
+    BiasRow(),
     EpsilonRow(),
     QuadsRow(),
     PaperTableRow(),
