@@ -13,7 +13,19 @@ from tempfile import TemporaryDirectory
 
 from benchmarks.revisions import with_kept
 
-NAMES = ("accuracy", "distance", "fingerprint", "locality", "pages", "pictures", "solve", "table1", "topology")
+NAMES = (
+    "accuracy",
+    "distance",
+    "fingerprint",
+    "locality",
+    "locking",
+    "pages",
+    "pictures",
+    "solve",
+    "table1",
+    "topology",
+    "wrap",
+)
 
 
 def benchmark_list() -> str:

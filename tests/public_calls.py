@@ -295,6 +295,7 @@ CALLS: dict[str, Call] = {
             "config": cagecut.SolverCageCut.Config(),
             "progress": False,
             "integrator": "paper",
+            "strain": "averaged",
             "newton_iterations": 1,
             "max_iterations": 20,
             "tolerance": 1e-3,
@@ -380,8 +381,16 @@ CALLS: dict[str, Call] = {
     ),
     "wrap_cage": Call(
         lambda w: cagecut.wrap_cage,
-        lambda w: {"points": w.surface.points, "triangles": w.surface.triangles, "face_count": 40, "offset": 0.02},
-        {"offset": ("a number",)},
+        lambda w: {
+            "points": w.surface.points,
+            "triangles": w.surface.triangles,
+            "face_count": 40,
+            "offset": 0.02,
+            "separate": False,
+            "polygons": False,
+            "progress": False,
+        },
+        {"offset": ("a number",), "separate": ("True",), "polygons": ("True",), "progress": ("None", "True")},
         {"face_count": ("faces",), "triangles": ("triangle",)},
     ),
     "AnimationWriter": Call(
