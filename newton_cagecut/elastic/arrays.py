@@ -96,7 +96,9 @@ TIME_STEP, STAGE_TIME = wp.constant(7), wp.constant(8)
 TARGET_VELOCITY, TARGET_REACHED = wp.constant(9), wp.constant(10)
 VELOCITY_KEPT, VELOCITY_REACHED = wp.constant(11), wp.constant(12)
 """Factors of the stage's target and of its velocity; see ``stages/scheme.py``."""
-SCALE_COUNT = 13
+END_TIME, IMPULSE_SHARE = wp.constant(13), wp.constant(14)
+"""When the stage ends, counted from the start of the step, and how long a force at its end acts in the step [s]."""
+SCALE_COUNT = 15
 
 
 @wp.struct

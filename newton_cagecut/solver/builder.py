@@ -97,6 +97,9 @@ def add_cage_body(
     capacity: Capacity | None = None,
     cuttable: bool = True,
     contact_radius: float | None = None,
+    contact_stiffness: float | None = None,
+    contact_damping: float | None = None,
+    friction: float | None = None,
     thickness: float | None = None,
     seed: int = 0,
     label: str | None = None,
@@ -126,6 +129,11 @@ def add_cage_body(
         capacity: Room for cuts, by default ``Capacity.for_cuts(cage, surface)``, for a dozen of them.
         cuttable: Whether the body can be cut. Without, no walk cache is kept.
         contact_radius: Makes the surface points collide as particles of this radius [m]; None for no contact.
+        contact_stiffness: Stiffness of each surface point [N/m], which the mean with the shape's is taken of; None for
+            ``model.soft_contact_ke``. An impact meets as much more as stops it within the radius.
+        contact_damping: Damping of each surface point [N s/m]; None for ``model.soft_contact_kd``.
+        friction: Coefficient of friction, which the mean with the shape's is taken of; None for
+            ``model.soft_contact_mu``.
         thickness: Thickness of a plane body [m], which its mass is proportional to; 1 m by default.
         seed: Seed of walks and quadrature.
         label: Name of the body.
@@ -163,7 +171,10 @@ def add_cage_body(
         quadrature_count=arguments.as_quadrature_count(quadrature, cage.vertex_count),
         cuttable=as_flag(cuttable, "cuttable"),
         capacity=arguments.as_capacity(capacity, cage, surface, cuttable=cuttable),
-        contact_radius=arguments.as_contact_radius(contact_radius, cage),
+        contact_radius=arguments.as_contact_radius(contact_radius, cage, quadrature),
+        contact_material=arguments.as_contact_material(
+            contact_radius, contact_stiffness=contact_stiffness, contact_damping=contact_damping, friction=friction
+        ),
         thickness=thickness,
         options=options,
     )

@@ -13,7 +13,7 @@ from ..solve.linear_solver import SolveLimits
 from ..solve.point_forces import PointForces
 from . import rigid_fit, stage_kernels, start_forces, start_limit
 from .line_search import LineSearch
-from .scheme import Stage
+from .scheme import Stage, courses_of
 from .stage_arrays import make_piece_arrays, make_stage_arrays, make_stage_factors
 from .step_record import StepRecord
 
@@ -80,6 +80,8 @@ class StageIntegrator(ImplicitIntegrator):
                 self._find_strain()
             self._improve(points)
         self._end_stage.launch()
+        if points is not None:
+            self._add_point_impulse(points)
 
     def _improve(self, points: PointForces | None) -> None:
         """One iteration of Newton's method."""
@@ -124,18 +126,19 @@ class StageIntegrator(ImplicitIntegrator):
         )
         self._stage_launches = tuple(
             (
-                self._once(stage_kernels.set_scales, [make_stage_factors(factors), body, step]),
+                self._once(stage_kernels.set_scales, [make_stage_factors(factors, course), body, step]),
                 *self._strain_launches,
                 begin_stage,
                 find_centers,
                 *(start_launches if factors.start_share else ()),
                 *guess_launches,
             )
-            for factors in scheme
+            for factors, course in zip(scheme, courses_of(scheme), strict=True)
         )
         everything = [body, step, stage, system]
         self._add_point_residual = self.solver.adding_residual(stage.moved_single, stage.earlier_velocity)
         self._add_point_product = self.solver.adding_product(system.solution, stage.product)
+        self._add_point_impulse = self.solver.adding_impulse(stage.moved_single, stage.end_velocity)
         self._show_moved = self._per_vertex(stage_kernels.show_moved, everything)
         self._inertial_residual = self._per_vertex(stage_kernels.find_inertial_residual, everything)
         self._multiply_inertia = self._per_vertex(stage_kernels.multiply_inertia, everything)

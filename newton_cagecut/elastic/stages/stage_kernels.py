@@ -13,8 +13,10 @@ from ..arrays import (
     DRIVEN,
     ELASTIC_FORCE,
     ELASTIC_STIFFNESS,
+    END_TIME,
     FORCE,
     HELD,
+    IMPULSE_SHARE,
     STAGE_TIME,
     START_SHARE,
     STIFFNESS,
@@ -99,6 +101,8 @@ def set_scales(factors: StageFactors, body: BodyArrays, step: StepArrays):
     step.scales[TARGET_REACHED] = factors.target_reached
     step.scales[VELOCITY_KEPT] = factors.velocity_kept
     step.scales[VELOCITY_REACHED] = factors.velocity_reached / dt
+    step.scales[END_TIME] = factors.end_time * dt
+    step.scales[IMPULSE_SHARE] = factors.impulse_share * dt
 
 
 @wp.kernel(enable_backward=False)
@@ -184,6 +188,8 @@ def end_stage(body: BodyArrays, step: StepArrays, stage: StageArrays):
     i = wp.tid()
     moved = stage.moved[i]
     stage.reached[i] = moved
+    stage.moved_single[i] = wp.vec3(moved)
+    stage.end_velocity[i] = wp.vec3(moved / step.scales[STAGE_TIME] - wp.vec3d(stage.earlier_velocity[i]))
     step.displacement[i] = wp.vec3(wp.vec3d(stage.start[i]) - wp.vec3d(body.rest[i]) + moved)
     step.predicted[i] = wp.vec3()
 
