@@ -3,8 +3,8 @@
 
 """Kernels of a reduced system that an edit makes run anew: masses, anchors and the number of pieces.
 
-M_ij = sum_q rho V_q w_qi w_qj, of which a thousandth is lumped onto the diagonal: the total mass and every row's sum
-stay, and M is positive definite also where no quadrature point feels a vertex.
+M_ij = sum_q rho V_q w_qi w_qj and the stabilising mass, whose rows sum to zero, so that every row's sum stays; it makes
+M positive definite also where no quadrature point feels a vertex.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from .launching import launch_later
 
 wp.set_module_options({"enable_backward": False})
 
-LUMPED = wp.constant(wp.float64(1.0e-3))
-"""Share of the mass that is lumped; also the least mass of a row, in mean masses, before lumping."""
+LEAST = wp.constant(wp.float64(1.0e-9))
+"""Least sum of a row, in mean ones: who reads the masses of particles may take 0 for held."""
 
 
 @wp.kernel(enable_backward=False)
@@ -45,24 +45,18 @@ def assemble_mass(body: BodyArrays):
 
 
 @wp.kernel(enable_backward=False)
-def lump_mass(body: BodyArrays):
-    """Move the lumped share of each row to the diagonal, and note the row's sum."""
+def sum_mass(body: BodyArrays):
+    """Sum each row, and take the mean of all rows for a floor that keeps them positive."""
     i = wp.tid()
-    body.vertex_mass[i] = 0.0
-    if i >= body.vertex_count[0]:
-        return
-    total = wp.float64(0.0)
-    for q in range(body.volumes.shape[0]):
-        total += wp.float64(body.volumes[q])
-    least = LUMPED * body.material[0][3] * total / wp.float64(body.vertex_count[0])
     row = wp.float64(0.0)
-    for j in range(body.vertex_count[0]):
-        entry = wp.float64(body.mass[i, j])
-        row += entry
-        body.mass[i, j] = float((wp.float64(1.0) - LUMPED) * entry)
-    lumped = LUMPED * wp.max(row, least)
-    body.mass[i, i] = float(wp.float64(body.mass[i, i]) + lumped)
-    body.vertex_mass[i] = float((wp.float64(1.0) - LUMPED) * row + lumped)
+    if i < body.vertex_count[0]:
+        total = wp.float64(0.0)
+        for q in range(body.volumes.shape[0]):
+            total += wp.float64(body.volumes[q])
+        for j in range(body.vertex_count[0]):
+            row += wp.float64(body.mass[i, j])
+        row = wp.max(row, LEAST * body.material[0][3] * total / wp.float64(body.vertex_count[0]))
+    body.vertex_mass[i] = float(row)
 
 
 @wp.kernel(enable_backward=False)
@@ -80,6 +74,6 @@ def record_masses(body: BodyArrays) -> tuple[wp.Launch, ...]:
     return (
         launch_later(find_anchors, points, [body], device),
         launch_later(assemble_mass, (capacity, capacity), [body], device),
-        launch_later(lump_mass, capacity, [body], device),
+        launch_later(sum_mass, capacity, [body], device),
         launch_later(count_pieces, 1, [body], device),
     )

@@ -9,6 +9,10 @@ neighbours: with c_i = e_i - b_i, where the affine combination b_i of the neighb
 energy mu k_i / 2 |c_i . x|^2 and the inertia rho m_i |c_i . v|^2 / 2 vanish for every affine motion. So neither resists
 a rigid motion, and forces and torques sum to zero. They top up what the quadrature gives to a share of what a shape
 function of the vertex's size should have, and are zero for well sampled vertices.
+
+A further thousandth of the mass, lumped onto the vertices, keeps the mass matrix positive definite where a piece has
+more vertices than points. What it would do in those affine motions that the points see is taken out, so that every
+piece has the mass, the centre of mass and the inertia that its points say.
 """
 
 from __future__ import annotations
@@ -20,6 +24,15 @@ _STIFFNESS_SHARE = 0.1
 
 _MASS_SHARE = 0.01
 """Least integral of w_i^2, in cubes of that size, of a plane body in its squares times thicknesses."""
+
+_LUMPED = 1.0e-3
+"""Share of the mass that is lumped; also the least lumped mass of a vertex, in mean masses of its piece's."""
+
+_FLAT = 1.0e-6
+"""Extent of a piece along an axis, in its size, below which it has none."""
+
+_SEEN = 0.01
+"""Share of its lumped mass that the points have to see of an affine motion."""
 
 _MISFIT = 1.0e-6
 """Error of an affine combination, in sizes, above which there is none: the neighbours lie in a plane or on a line."""
@@ -64,6 +77,36 @@ def stabilize(
         stiffness += missing_stiffness[i] * outer
         mass += missing_mass[i] * outer
     return stiffness, mass
+
+
+def lumped_mass(vertices: np.ndarray, piece: np.ndarray, weights: np.ndarray, volumes: np.ndarray) -> np.ndarray:
+    """A share of the mass lumped onto the vertices, without what it does in affine motions of a piece that points see.
+
+    Args:
+        vertices: Rest positions of the cage's vertices, shape (n, dimension) [m].
+        piece: The piece that each vertex belongs to, shape (n,).
+        weights: Weights at the quadrature points, shape (q, n).
+        volumes: Volumes of the quadrature points, shape (q,) [m^3].
+
+    Returns:
+        Mass over the density, positive semidefinite, zero for those affine motions, shape (n, n) [m^3].
+    """
+    volumes = volumes.astype(float)
+    rows, result = volumes @ weights, np.zeros((len(vertices), len(vertices)))
+    for number in np.unique(piece):
+        own = np.flatnonzero(piece == number)
+        root = np.sqrt(np.maximum(rows[own], _LUMPED * rows[own].mean()))
+        if not (root > 0.0).all():
+            continue
+        offset = vertices[own] - vertices[own].mean(axis=0)
+        affine = root[:, None] * np.c_[np.ones(len(own)), offset / np.abs(offset).max()]
+        axes, extents, _ = np.linalg.svd(affine, full_matrices=False)
+        axes = axes[:, extents > _FLAT * extents.max()]
+        felt = np.sqrt(volumes)[:, None] * (weights[:, own] @ (axes / root[:, None]))
+        seen, mixed = np.linalg.eigh(felt.T @ felt)
+        axes = axes @ mixed[:, seen > _SEEN]
+        result[np.ix_(own, own)] = _LUMPED * root[:, None] * (np.eye(len(own)) - axes @ axes.T) * root
+    return result
 
 
 def _deviation(i: int, vertices: np.ndarray, adjacent: np.ndarray, size: float) -> np.ndarray:

@@ -18,7 +18,7 @@ from .material import Material
 from .plane_confinement import find_normal
 from .solve.linear_solver import SolveLimits
 from .solve.point_forces import PointForces
-from .stabilization import stabilize
+from .stabilization import lumped_mass, stabilize
 from .stages.scheme import SCHEMES
 from .stages.stage_integrator import StageIntegrator
 from .stages.step_record import make_step_record, read_counts
@@ -114,6 +114,7 @@ class ReducedSystem:
         self._refresh_launches = record_masses(body)
         if self.is_plane:
             self._refresh_launches += (launch_later(find_normal, 1, [body], self.device),)
+        self._tied_mass = np.zeros((0, 0))
         self.set_material(material)
 
     @property
@@ -150,17 +151,27 @@ class ReducedSystem:
         count = len(vertices)
         weights, gradients = self.weights.numpy()[:, :count], self.gradients.numpy()[:, :count]
         thickness = self.thickness if self.is_plane else 1.0
-        matrices = stabilize(vertices, edges, weights, gradients, self.volumes.numpy(), thickness=thickness)
-        for array, matrix in zip((self.stabilizing_stiffness, self.stabilizing_mass), matrices, strict=True):
-            padded = np.zeros(array.shape, dtype=np.float32)
-            padded[:count, :count] = matrix
-            array.assign(padded)
+        volumes = self.volumes.numpy()
+        stiffness, mass = stabilize(vertices, edges, weights, gradients, volumes, thickness=thickness)
+        _assign_block(self.stabilizing_stiffness, stiffness)
+        self._tied_mass = mass
 
     def refresh(self) -> None:
         """Bring masses, anchors and lanes up to date after an edit of weights, gradients, volumes or the count."""
+        self._lump_mass()
         for launch in self._refresh_launches:
             launch.launch()
         self._integrator.solver.refresh()
+
+    def _lump_mass(self) -> None:
+        """Bring the stabilising mass up to date."""
+        count = int(self.vertex_count.numpy()[0])
+        rest = self.rest.numpy()[:count].astype(float) @ self.rotation.numpy()[0].astype(float)
+        piece, weights = self.piece.numpy()[:count], self.weights.numpy()[:, :count]
+        mass = lumped_mass(rest[:, :2] if self.is_plane else rest, piece, weights, self.volumes.numpy())
+        tied = len(self._tied_mass)
+        mass[:tied, :tied] += self._tied_mass
+        _assign_block(self.stabilizing_mass, mass)
 
     def step(
         self,
@@ -211,3 +222,10 @@ class ReducedSystem:
             velocities: Velocities, shape (vertex_capacity,) vec3 [m/s].
         """
         return self._energy.of(positions, velocities)
+
+
+def _assign_block(array: wp.array, block: np.ndarray) -> None:
+    """Write a square matrix into the upper left corner of an array, zeros into the rest."""
+    rows = np.zeros(array.shape, dtype=np.float32)
+    rows[: len(block), : len(block)] = block
+    array.assign(rows)

@@ -338,6 +338,21 @@ class Surface:
         sums[np.linalg.norm(sums, axis=2) <= _CANCELLED * sizes] = 0.0
         return units(-units(sums, least=_NO_LENGTH).sum(axis=1), least=_NO_LENGTH)
 
+    def on_several_cuts(self, sites: np.ndarray) -> np.ndarray:
+        """Whether sites are corners of caps of more than one wall, shape (n,); in the plane of any wall.
+
+        Args:
+            sites: Site ids, shape (n,).
+        """
+        if self.dimension == 2:
+            return self.site_key[sites] >= 0
+        low, high = np.full(self.site_count, np.iinfo(np.int32).max), np.full(self.site_count, -1)
+        cap = self.triangle_cap >= 0
+        corners, wall = self.site_triangles[cap].reshape(-1), np.repeat(self.triangle_cap[cap], 3)
+        np.minimum.at(low, corners, wall)
+        np.maximum.at(high, corners, wall)
+        return low[sites] < high[sites]
+
     def _directions_from_border(self, sites: np.ndarray) -> np.ndarray:
         """The same for a flat mesh: minus the sum of the normals of the border's two edges at each site.
 

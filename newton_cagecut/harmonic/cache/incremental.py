@@ -14,7 +14,16 @@ from ..journal import Journal
 from ..launch import launch, launch_blocks
 from ..resolve.fitted_rows import FittedRows
 from ..stats import UpdateStats
-from ..walks.marking import ON_FACE, RESUME, REWALK, gather, make_mark_kernel, meet_first_spheres, unmark_walks
+from ..walks.marking import (
+    ON_FACE,
+    RESUME,
+    REWALK,
+    UNCHANGED_KEY,
+    gather,
+    make_mark_kernel,
+    meet_first_spheres,
+    unmark_walks,
+)
 from ..walks.work import Work
 from .domain_state import DomainState
 from .walk_cache import WalkCache
@@ -97,8 +106,10 @@ def run_concerned(
     if cache.options.correction == "fitted":
         again[:] = True
     elif cache.options.correction != "none":
-        # An affine correction is spread over all vertices of a piece.
-        again |= cache.weights.degrees.numpy()[: cache.point_count] == 0
+        # An affine correction is spread over all vertices of a piece, on a wall over all corners of a face.
+        keys, changes = cache.keys, after.change.key_changes
+        on_changed = changes[np.maximum(keys, 0)] != np.uint8(UNCHANGED_KEY)
+        again |= np.where(keys >= 0, on_changed, cache.weights.degrees.numpy()[: cache.point_count] == 0)
     again[cache.removed_points] = False
     indices = np.flatnonzero(again)
     cache.keep_weights(indices, journal)

@@ -7,8 +7,9 @@ For a harmonic polynomial h the landing X satisfies E[h(X)] = h(p) exactly, cut 
 regressed on the harmonic polynomials up to degree 3 over the point's landings, and the fit is read at p: unit sum and
 linear precision hold to rounding, and the variance falls (design, section 3). The linear polynomials are taken at
 sum_j phi_j v_j, which for a nested walk is the point of the edge where it ended: the identities then hold for what
-the weights really are. The gradient is that of the fit plus the boundary integral estimator of Sawhney and Crane 2020
-(paper, section 6.1) applied to what the fit leaves over.
+the weights really are. On a wall all walks of a point end in its face; what few of them leave is spread over the
+corners that the point sees. The gradient is that of the fit plus the boundary integral estimator of Sawhney and Crane
+2020 (paper, section 6.1) applied to what the fit leaves over.
 
 The sums run over the walks in their order, so the result does not depend on which walks were walked again.
 """
@@ -27,6 +28,7 @@ from ..walks.query_points import QueryPoints
 from ..walks.random import make_direction
 from ..walks.records import WalkRecords
 from .affine import make_affine_correction
+from .face_correction import make_face_correction
 from .point_weights import PointWeights
 from .polynomials import make_polynomials
 from .regression import FAR_COUNT, make_regression
@@ -58,6 +60,7 @@ def make_resolve_kernel(*, dimension: int, correction: str, gradients: bool) -> 
     landing_value = make_landing_value(dimension)
     direction = make_direction(dimension)
     correct_affinely = make_affine_correction(dimension, Moments)
+    correct_on_face = make_face_correction(dimension, Moments)
 
     @wp.kernel(enable_backward=False, module="unique")
     def resolve(
@@ -138,8 +141,6 @@ def make_resolve_kernel(*, dimension: int, correction: str, gradients: bool) -> 
         if wp.static(harmonic):
             gram = factor_gram(gram, count_of_degree(max_degree))
             degree = choose_degree(gram, moments, slot, vertex_count, walks, max_degree, squares, far)
-            if points.key[point] >= 0:
-                degree = wp.max(degree, 1)
             count = count_of_degree(degree)
             for j in range(vertex_count):
                 fit = moments.value[slot, j]
@@ -162,7 +163,12 @@ def make_resolve_kernel(*, dimension: int, correction: str, gradients: bool) -> 
                 moments.value[slot, j] = moments.value[slot, j] * scale
                 moments.slope[slot, j] = moments.slope[slot, j] * flux_scale
             if wp.static(correction == "affine"):
-                correct_affinely(moments, tables, slot, piece, vertex_count, origin)
+                if points.key[point] < 0:
+                    correct_affinely(moments, tables, slot, piece, vertex_count, origin)
+        if wp.static(correction != "none"):
+            if points.key[point] >= 0:
+                wall = points.key[point] // 2
+                correct_on_face(moments, tables, slot, landings.face[first_walk], wall, vertex_count, origin)
         degrees[point] = degree
         least = float(0.0)
         for j in range(vertex_count):

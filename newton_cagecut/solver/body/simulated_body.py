@@ -26,7 +26,7 @@ from .edit_stamps import EditStamps, hold_rows, state_edits
 from .embedding import Motion, SeamPoints, embed, embed_motion, join_motion, make_surface_rows
 from .rest_frame import RestFrame
 
-_NUDGE = 1.0e-6
+_NUDGE = 3.0e-7
 """How far points on cuts are moved off the other cuts, in diameters of the cage."""
 
 
@@ -352,7 +352,7 @@ class SimulatedBody:
         return self.system.energy(state.particle_q[self.vertices], state.particle_qd[self.vertices])
 
     def nudged_sites(self, surface: Surface, indices: np.ndarray) -> np.ndarray:
-        """Sites of a surface, moved by next to nothing off other cuts that they may lie on, into their own piece.
+        """Sites of a surface, those on several cuts moved by next to nothing into their own piece.
 
         Args:
             surface: The surface.
@@ -361,8 +361,10 @@ class SimulatedBody:
         Returns:
             Rest positions [m], shape (n, dimension).
         """
-        distance = _NUDGE * self.definition.cage.diameter
-        return surface.site_points[indices] + distance * surface.directions_inward(indices)
+        places, step = surface.site_points[indices], _NUDGE * self.definition.cage.diameter
+        moved = np.flatnonzero(surface.on_several_cuts(indices))
+        places[moved] += step * surface.directions_inward(np.asarray(indices)[moved])
+        return places
 
     def _sample(self, definition: BodyDefinition) -> BodyQuadrature | None:
         if not definition.quadrature_count:

@@ -22,6 +22,7 @@ from ...surface import SurfaceCut, SurfaceEdit
 from ..body.simulated_body import SimulatedBody
 from .cut_report import Clock, CutReport
 from .edited_states import checked_states
+from .motion_fit import MotionFit
 from .transfer import Transfer
 
 
@@ -89,7 +90,7 @@ class BodyCut:
         body.capacity.require(edit.cage, surface_edit.surface)
         clock.lap("surface")
         before = _total_energy(body, states)
-        transfer = Transfer(body, edit)
+        transfer, motion = Transfer(body, edit), MotionFit(body, states)
         clock.lap("transfer")
         with Journal() as journal:
             journal.keep_attributes(self, "cut", "_surface_cut")
@@ -100,6 +101,7 @@ class BodyCut:
             transfer.apply(states)
             body.set_surface(surface_edit.surface)
             body.refresh()
+            motion.apply(transfer.piece_before, journal)
             body.commit_edit(body.definition.last_edit + 1, states)
             after = _total_energy(body, states)
         clock.lap("transfer")

@@ -39,10 +39,14 @@ class Transfer:
         self._on_face = edit.source_faces >= 0
         self._rest = body.to_world(points)
         self._weights = np.zeros((0, edit.before.vertex_count))
+        self.piece_before = np.zeros(edit.cage.vertex_count, dtype=np.int64)
+        """The piece that each vertex belonged to, or comes from, before the edit, shape (vertex_count,)."""
+        self.piece_before[: edit.before.vertex_count] = edit.before.vertex_piece
         if len(points):
             keys = np.where(self._on_face, edit.before.face_key[edit.source_faces], -1)
             weights = body.coordinates.weights_at(points, keys, walks=_TRANSFER_WALKS)
             self._weights = weights.astype(np.float64)
+            self.piece_before[self._vertices] = edit.before.vertex_piece[np.abs(weights).argmax(axis=1)]
 
     def apply(self, states: Sequence[newton.State]) -> None:
         """Write the vertices' rest positions and constraints, and their rows of states and of the model.
