@@ -98,7 +98,9 @@ VELOCITY_KEPT, VELOCITY_REACHED = wp.constant(11), wp.constant(12)
 """Factors of the stage's target and of its velocity; see ``stages/scheme.py``."""
 END_TIME, IMPULSE_SHARE = wp.constant(13), wp.constant(14)
 """When the stage ends, counted from the start of the step, and how long a force at its end acts in the step [s]."""
-SCALE_COUNT = 15
+JOINED = wp.constant(15)
+"""Whether pieces push each other, so that none chooses alone how much of a solution it takes."""
+SCALE_COUNT = 16
 
 
 @wp.struct

@@ -13,7 +13,7 @@ import warp as wp
 
 from ..cage import Cage
 from ..elastic import Material
-from ..geometry import as_index, as_instance, as_length, as_number, as_numbers, shown
+from ..geometry import as_flag, as_index, as_instance, as_length, as_number, as_numbers, shown
 from ..harmonic import check_options
 from ..surface import Surface
 from .body.capacity import MOST, Capacity
@@ -234,6 +234,27 @@ def as_contact_material(radius: float | None, **values: float | None) -> Contact
     if numbers["contact_stiffness"] == 0.0:
         raise ValueError("contact_stiffness must be positive; leave contact_radius out for a body without contact")
     return ContactMaterial(numbers["contact_stiffness"], numbers["contact_damping"], numbers["friction"])
+
+
+def as_touching(radius: float | None, cage: Cage, **flags: bool) -> dict[str, bool]:
+    """What a body touches of itself.
+
+    Args:
+        radius: Its contact radius, as it was passed.
+        cage: Its cage.
+        flags: What was passed, by the arguments' names.
+
+    Raises:
+        TypeError: A value is no flag.
+        ValueError: There is no contact radius, or the body is a plane one.
+    """
+    found = {name: as_flag(flag, name) for name, flag in flags.items()}
+    for name in (name for name, flag in found.items() if flag):
+        if radius is None:
+            raise ValueError(f"{name} needs contact_radius: without, the surface has no particles that could touch")
+        if cage.dimension == 2:
+            raise ValueError(f"{name} is for solid bodies; a plane body touches shapes only")
+    return found
 
 
 def as_thickness(thickness: float | None, cage: Cage, surface: Surface) -> float | None:

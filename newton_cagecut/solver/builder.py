@@ -100,6 +100,8 @@ def add_cage_body(
     contact_stiffness: float | None = None,
     contact_damping: float | None = None,
     friction: float | None = None,
+    self_contact: bool = False,
+    pieces_touch: bool = False,
     thickness: float | None = None,
     seed: int = 0,
     label: str | None = None,
@@ -134,6 +136,9 @@ def add_cage_body(
         contact_damping: Damping of each surface point [N s/m]; None for ``model.soft_contact_kd``.
         friction: Coefficient of friction, which the mean with the shape's is taken of; None for
             ``model.soft_contact_mu``.
+        self_contact: Whether each piece touches itself: the sides of a slit, and where it folds. Of solid bodies with a
+            contact radius; gaps are between the surfaces, without the radius.
+        pieces_touch: Whether pieces that cuts have separated touch each other, likewise.
         thickness: Thickness of a plane body [m], which its mass is proportional to; 1 m by default.
         seed: Seed of walks and quadrature.
         label: Name of the body.
@@ -175,6 +180,7 @@ def add_cage_body(
         contact_material=arguments.as_contact_material(
             contact_radius, contact_stiffness=contact_stiffness, contact_damping=contact_damping, friction=friction
         ),
+        **arguments.as_touching(contact_radius, cage, self_contact=self_contact, pieces_touch=pieces_touch),
         thickness=thickness,
         options=options,
     )

@@ -154,9 +154,9 @@ class SolverCageCut(LiveSolver):
     ) -> None:
         """Advance all cage bodies by one step; what is not theirs is copied through, see ``Config.foreign``.
 
-        Contacts push both ways: what they do to rigid bodies is added to ``state_in.body_f``, about the centres of mass,
-        for the solver that steps those from ``state_in`` afterwards. ``state_in.particle_f`` acts on cage vertices and,
-        of bodies with a contact radius, on surface points.
+        Contacts push both ways: what they do to rigid bodies is added to ``state_in.body_f``, about the centres of
+        mass, for the solver that steps those from ``state_in`` afterwards. ``state_in.particle_f`` acts on cage
+        vertices and, of bodies with a contact radius, on surface points.
 
         A body whose rows of ``state_in`` missed an edit is left where it is there, and counted: in a replay of a
         captured graph nothing else can be done. Outside of a capture that raises, then or at the next call.

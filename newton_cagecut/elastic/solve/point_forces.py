@@ -41,6 +41,8 @@ class PointForces:
     """Row of point 0 in ``weights``."""
     pair_weights: wp.array2d[float]
     """Weights of places that touch the body itself, less those of the place touched, one a row and vertex."""
+    pair_count: wp.array[int]
+    """Number of these rows in use, shape (1,)."""
     touched: wp.array[int]
     """The point that a force acts on; or -1 - r for row r of ``pair_weights``."""
     count: wp.array[int]
@@ -74,7 +76,8 @@ def make_point_forces(weights: wp.array, first_row: int, capacity: int, *, pairs
     points.weights, points.first_row = weights, first_row
     with wp.ScopedDevice(weights.device):
         points.pair_weights = wp.zeros((pairs, weights.shape[1]), dtype=float)
-        points.touched, points.count = wp.zeros(capacity, dtype=int), wp.zeros(1, dtype=int)
+        points.touched = wp.zeros(capacity, dtype=int)
+        points.count, points.pair_count = (wp.zeros(1, dtype=int) for _ in range(2))
         points.force, points.drift, points.impulse = (wp.zeros(capacity, dtype=wp.vec3) for _ in range(3))
         points.stiffness, points.damping = (wp.zeros(capacity, dtype=wp.mat33) for _ in range(2))
         points.system, points.product = wp.zeros(capacity, dtype=Symmetric), wp.zeros(capacity, dtype=wp.vec4)

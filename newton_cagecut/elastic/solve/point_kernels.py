@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import warp as wp
 
-from ..arrays import DAMPING, END_TIME, FORCE, IMPULSE_SHARE, STIFFNESS, LinearSystem, StepArrays
+from ..arrays import DAMPING, END_TIME, FORCE, IMPULSE_SHARE, JOINED, STIFFNESS, LinearSystem, StepArrays
 from .cholesky import wait
 from .conjugate_gradient import Search
 from .point_forces import PointForces, as_four, as_three, multiply_points, packed, point_value, pull_back
@@ -47,6 +47,8 @@ def add_point_residual(
     wait()
     force_scale = float(step.scales[FORCE])
     stiffness_scale, damping_scale = float(step.scales[STIFFNESS]), float(step.scales[DAMPING])
+    if thread == 0 and points.pair_count[0] > 0:
+        step.scales[JOINED] = wp.float64(1.0)
     time = float(step.scales[END_TIME])
     for slot in range(thread, points.count[0], wp.block_dim()):
         block = stiffness_scale * points.stiffness[slot] + damping_scale * points.damping[slot]

@@ -17,6 +17,7 @@ from ..arrays import (
     FORCE,
     HELD,
     IMPULSE_SHARE,
+    JOINED,
     STAGE_TIME,
     START_SHARE,
     STIFFNESS,
@@ -103,6 +104,7 @@ def set_scales(factors: StageFactors, body: BodyArrays, step: StepArrays):
     step.scales[VELOCITY_REACHED] = factors.velocity_reached / dt
     step.scales[END_TIME] = factors.end_time * dt
     step.scales[IMPULSE_SHARE] = factors.impulse_share * dt
+    step.scales[JOINED] = wp.float64(0.0)
 
 
 @wp.kernel(enable_backward=False)

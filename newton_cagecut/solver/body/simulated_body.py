@@ -83,7 +83,7 @@ class SimulatedBody:
         self.world = int(model.particle_world.numpy()[vertex_start])
         """World of the body, -1 for the global one."""
         self.system = self._make_system() if self.quadrature_count else None
-        self.contact = ContactTerm(self) if self.has_contact and self.system else None
+        self.contact = ContactTerm(self) if self.has_contact else None
         self._surface_buffer = None
         self.uncut: tuple[BodyQuadrature | None, CoordinatesSnapshot] | None = None
         self._prescribed = wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device)
@@ -339,6 +339,8 @@ class SimulatedBody:
             self.system.stabilize(self.cage.vertices, self.cage.mesh.edges)
             self.system.refresh()
             self.show_masses()
+        if self.contact is not None:
+            self.contact.refresh()
 
     def show_masses(self) -> None:
         """Bring the model's masses up to date with the system's."""

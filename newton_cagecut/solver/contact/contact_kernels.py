@@ -96,9 +96,7 @@ def inverse_mass(touch: Touch, model: ContactModel, state: ContactState, respons
         return 0.0
     if (model.body_flags[touch.rigid] & _KINEMATIC) != 0:
         return 0.0
-    turn = wp.quat_rotate_inv(
-        wp.transform_get_rotation(state.body_q[touch.rigid]), wp.cross(touch.arm, touch.normal)
-    )
+    turn = wp.quat_rotate_inv(wp.transform_get_rotation(state.body_q[touch.rigid]), wp.cross(touch.arm, touch.normal))
     own = model.body_inv_mass[touch.rigid] + wp.dot(turn, model.body_inv_inertia[touch.rigid] * turn)
     return response.share[touch.rigid] * float(response.count[touch.rigid]) * own
 
@@ -145,7 +143,7 @@ def place_forces(rows: SurfaceRows, state: ContactState, first_particle: int, sl
     i = wp.tid()
     count, first = slots.point_count[i], slots.point_first[i]
     if i == slots.point_count.shape[0] - 1:
-        points.count[0] = wp.min(first + count, slots.source.shape[0])
+        points.count[0] = wp.min(first + count, slots.source.shape[0])  # more than that find no slot
     slots.point_count[i] = 0
     if i < rows.point_count[0] and count > 0 and first < slots.source.shape[0]:
         force = state.particle_f[first_particle + i]
@@ -263,8 +261,8 @@ def react(
     if response.count[rigid] == 0 or enabled[0] == 0:
         return
     force, torque = wp.vec3(), wp.vec3()
-    for slot in range(points.count[0]):
-        if slots.rigid[slot] == rigid:
+    for slot in range(wp.min(points.count[0], slots.rigid.shape[0])):
+        if points.touched[slot] >= 0 and slots.rigid[slot] == rigid:
             pull = points.impulse[slot]
             force -= pull
             torque -= wp.cross(slots.arm[slot], pull)

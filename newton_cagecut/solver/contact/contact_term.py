@@ -29,12 +29,15 @@ from .contact_arrays import (
     make_contact_slots,
     soft_contacts,
 )
+from .self_contact import SelfContact
 
 if TYPE_CHECKING:
     from ..body.simulated_body import SimulatedBody
 
 _SLOTS = 2
 """Room for forces, in surface points: each may be pushed and given a force."""
+_PAIRS = 4096
+"""Most contacts of a body with itself."""
 
 
 class ContactTerm:
@@ -47,7 +50,11 @@ class ContactTerm:
     def __init__(self, body: SimulatedBody) -> None:
         self._body = body
         rows, room = body.surface_rows, body.capacity.surface_points
-        self.points = make_point_forces(rows.weights, rows.first_row, _SLOTS * room)
+        definition = body.definition
+        touches = definition.self_contact or definition.pieces_touch
+        pairs = min(room, _PAIRS) if touches else 0
+        self.points = make_point_forces(rows.weights, rows.first_row, _SLOTS * room + pairs, pairs=pairs)
+        self._touching = SelfContact(body, pairs) if touches else None
         with wp.ScopedDevice(body.device):
             self.slots = make_contact_slots(room, _SLOTS * room)
 
@@ -78,11 +85,22 @@ class ContactTerm:
             wp.launch(contact_kernels.place_contacts, dim=contacts.soft_contact_max, inputs=finding, device=device)
             wp.launch(contact_kernels.sort_contacts, dim=room, inputs=[finding[1], slots], device=device)
 
+    def refresh(self) -> None:
+        """Follow an edit of the surface."""
+        if self._touching is not None:
+            self._touching.refresh()
+
     def fill(self, state: newton.State, contacts: newton.Contacts | None, response: RigidResponse, dt: float) -> None:
         """Find the forces, once the contacts of all bodies are counted; see :meth:`collect`."""
+        if contacts is not None and self._body.model.shape_count > 0 and contacts.soft_contact_max > 0:
+            self._fill(state, contacts, response, dt)
+        if self._touching is not None:
+            rows = self._body.surface_particles
+            self._touching.collect(state.particle_q[rows], state.particle_qd[rows], self.points, dt)
+
+    def _fill(self, state: newton.State, contacts: newton.Contacts, response: RigidResponse, dt: float) -> None:
+        """Find the forces of the contacts with shapes."""
         body = self._body
-        if contacts is None or body.model.shape_count == 0 or contacts.soft_contact_max == 0:
-            return
         model, now = contact_model(body.model, body.definition.contact_material), contact_state(state)
         inputs = [dt, soft_contacts(contacts), model, now, response, body.surface_particles.start, body.surface_rows]
         wp.launch(
