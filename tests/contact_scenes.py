@@ -42,10 +42,16 @@ def cube_surface(cells: int = 4) -> cagecut.Surface:
     return cagecut.Surface(points, np.array(triangles))
 
 
-def add_cube(builder: newton.ModelBuilder, height: float, **options) -> int:
+def cube_cage(*, refined: bool = False) -> cagecut.Cage:
+    """The cage of the cube: a box, or one with vertices on its edges and faces too."""
+    cage = cagecut.Cage(SIDE * box().vertices, box().faces)
+    return cage.refine() if refined else cage
+
+
+def add_cube(builder: newton.ModelBuilder, height: float, *, refined: bool = False, **options) -> int:
     """Add the cube, its lower side at a height."""
     cagecut.SolverCageCut.register_custom_attributes(builder)
-    cage = cagecut.Cage(SIDE * box().vertices, box().faces)
+    cage = cube_cage(refined=refined)
     defaults = {
         "material": cagecut.Material(young=1.0e6, density=1000.0, damping=0.01),
         "xform": wp.transform((0.0, 0.0, height)),

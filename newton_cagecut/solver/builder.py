@@ -132,7 +132,7 @@ def add_cage_body(
         cuttable: Whether the body can be cut. Without, no walk cache is kept.
         contact_radius: Makes the surface points collide as particles of this radius [m]; None for no contact.
         contact_stiffness: Stiffness of each surface point [N/m], which the mean with the shape's is taken of; None for
-            ``model.soft_contact_ke``. An impact meets as much more as stops it within the radius.
+            ``model.soft_contact_ke``.
         contact_damping: Damping of each surface point [N s/m]; None for ``model.soft_contact_kd``.
         friction: Coefficient of friction, which the mean with the shape's is taken of; None for
             ``model.soft_contact_mu``.

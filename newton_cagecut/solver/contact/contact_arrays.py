@@ -53,6 +53,8 @@ class ContactModel:
     """Inverse inertia about the centre of mass in its frame, one a rigid body [1/(kg m^2)]."""
     body_flags: wp.array[wp.int32]
     """Newton's flags, one a rigid body."""
+    firmness: float
+    """Stiffness that Young's modulus gives to all points together, of a body with firm contacts; otherwise 0 [N/m]."""
 
 
 @wp.struct
@@ -123,14 +125,16 @@ def soft_contacts(contacts: newton.Contacts) -> SoftContacts:
     return found
 
 
-def contact_model(model: newton.Model, material: ContactMaterial) -> ContactModel:
+def contact_model(model: newton.Model, material: ContactMaterial, firmness: float) -> ContactModel:
     """What contact of a body reads of a model, as it is now.
 
     Args:
         model: The model.
         material: The body's own contact material.
+        firmness: See ``ContactModel`` [N/m].
     """
     found = ContactModel()
+    found.firmness = firmness
     found.particle_radius = model.particle_radius
     shared = (model.soft_contact_ke, model.soft_contact_kd, model.soft_contact_mu)
     own = (material.stiffness, material.damping, material.friction)

@@ -18,8 +18,10 @@ from .contact_arrays import ContactModel, ContactSlots, ContactState, RigidRespo
 
 wp.set_module_options({"enable_backward": False})
 
-_SLOWEST = wp.constant(1.0e-4)
+_SLOWEST = wp.constant(1.0e-3)
 """Sliding speed below which friction is viscous [m/s]."""
+_STICKING = wp.constant(1.0e-4)
+"""The same of firm contacts [m/s]."""
 _PUSHED_OUT = wp.constant(1.0)
 """Greatest speed at which points deeper than their radius are pushed out [m/s]."""
 _FIRM = wp.constant(10.0)
@@ -84,7 +86,7 @@ def find_touch(
     touch.gap = wp.dot(touch.normal, state.particle_q[particle] - point) - model.particle_radius[particle]
     touch.velocity = state.particle_qd[particle]
     closing = wp.dot(touch.normal, touch.velocity - touch.drift)
-    if touch.gap < 0.0 or touch.gap + dt * closing < 0.0:
+    if touch.gap < 0.0 or (model.firmness > 0.0 and touch.gap + dt * closing < 0.0):
         touch.row = row
     return touch
 
@@ -141,7 +143,8 @@ def count_contacts(
 def place_forces(rows: SurfaceRows, state: ContactState, first_particle: int, slots: ContactSlots, points: PointForces):
     """Give the forces that were given their slots, which are the first of each surface point."""
     i = wp.tid()
-    count, first = slots.point_count[i], slots.point_first[i]
+    count = slots.point_count[i]
+    first = slots.point_first[i]
     if i == slots.point_count.shape[0] - 1:
         points.count[0] = wp.min(first + count, slots.source.shape[0])  # more than that find no slot
     slots.point_count[i] = 0
@@ -225,22 +228,32 @@ def fill_contacts(
     mass = slots.mass[0] / float(points.count[0])
     material = model.particle_material
     k = 0.5 * (material[0] + model.shape_ke[shape])
-    k = wp.max(k, mass * wp.max(-closing, 0.0) / (dt * radius))
     push = -k * touch.gap
-    if touch.gap < -radius:
-        push = k * radius
-        k = wp.max(k, _FIRM * mass / (dt * dt))
-        push += k * wp.min(-touch.gap - radius, dt * _PUSHED_OUT)
+    friction = 0.5 * (material[2] + model.shape_mu[shape])
+    speed = wp.length(sliding)
+    rubbing, drag = wp.vec3(), friction * push / wp.max(speed, _SLOWEST)
+    if model.firmness > 0.0:
+        firmness = model.firmness / float(points.count[0])
+        ahead = wp.max(-closing, 0.0) * dt / radius
+        k = wp.max(k, mass * ahead / (dt * dt) + wp.clamp(ahead - 1.0, 0.0, 1.0) * firmness)
+        push = -k * touch.gap
+        if touch.gap < -radius:
+            push = k * radius
+            k = wp.max(k, wp.max(_FIRM * mass / (dt * dt), firmness))
+            push += k * wp.min(-touch.gap - radius, dt * _PUSHED_OUT)
+        friction *= wp.max(push, 0.0)
+        drag = friction / wp.max(speed, _STICKING)
+        if speed > 2.0 * dt * friction / mass:  # too fast to be stopped in the step: the force is known
+            rubbing, drag = -drag * sliding, 0.0
     give = dt * inverse_mass(touch, model, state, response)
     kd = 0.5 * (material[1] + model.shape_kd[shape])
-    drag = 0.5 * (material[2] + model.shape_mu[shape]) * wp.max(push, 0.0) / wp.max(wp.length(sliding), _SLOWEST)
     shrink = 1.0 / (1.0 + give * (dt * k + kd))
     along = wp.outer(normal, normal)
     across = wp.identity(3, dtype=float) - along
     slots.rigid[slot] = touch.rigid
     slots.arm[slot] = touch.arm
     points.touched[slot] = touch.row
-    points.force[slot] = (shrink * push) * normal
+    points.force[slot] = (shrink * push) * normal + rubbing
     points.stiffness[slot] = (shrink * k) * along
     points.damping[slot] = (shrink * kd) * along + (drag / (1.0 + give * drag)) * across
     points.drift[slot] = touch.drift

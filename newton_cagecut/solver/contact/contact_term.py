@@ -3,11 +3,14 @@
 
 """Contact of a body's surface with Newton's shapes: implicit penalty forces, pulled back to the cage.
 
-Newton's pipeline finds soft contacts of the surface particles. One acts if its gap is closed by the end of the step. It
-pushes with a stiffness along its normal, and drags with Coulomb friction of the push at the start of the step; force
-and stiffness reach the cage through the weights, w^T f and w^T S w, so the step stays one symmetric positive definite
-solve. The stiffness is the mean of the body's and the shape's, as in Newton's other solvers, but no less than stops the
-point's share of the body's mass within its radius. What is deeper than that is pushed out at 1 m/s at most.
+Newton's pipeline finds soft contacts of the surface particles. Each pushes with the mean stiffness of body and shape, as
+in Newton's other solvers, and drags with Coulomb friction of the push at the start of the step; force and stiffness
+reach the cage through the weights, w^T f and w^T S w, so the step stays one symmetric positive definite solve.
+
+Firm contacts act already if their gap is closed by the end of the step, and are as much stiffer as stops a point's share
+of the body's mass within its radius. What is deeper than that meets what bears its share of Young's modulus too, and is
+pushed out at 1 m/s at most. Points that slide too fast to be stopped in the step are rubbed with a known force; others
+as by a viscous one, which holds them.
 
 A rigid body gives way: each of its n contacts is in series with an n-th of its inertia. What the contacts gave to the
 cage in the step, with the sign turned, goes to ``body_f``, so the pair keeps its momentum.
@@ -23,6 +26,7 @@ import warp as wp
 from ...elastic import make_point_forces
 from . import contact_kernels
 from .contact_arrays import (
+    ContactModel,
     RigidResponse,
     contact_model,
     contact_state,
@@ -70,7 +74,7 @@ class ContactTerm:
             dt: Time step [s].
         """
         body, points, slots, room = self._body, self.points, self.slots, self._body.capacity.surface_points
-        model, now = contact_model(body.model, body.definition.contact_material), contact_state(state)
+        model, now = self._model(), contact_state(state)
         rows, first, device = body.surface_rows, body.surface_particles.start, body.device
         inputs = [body.system.vertex_mass, rows, now, first, slots]
         wp.launch(contact_kernels.begin_contacts, dim=room, inputs=inputs, device=device)
@@ -84,6 +88,14 @@ class ContactTerm:
         if found:
             wp.launch(contact_kernels.place_contacts, dim=contacts.soft_contact_max, inputs=finding, device=device)
             wp.launch(contact_kernels.sort_contacts, dim=room, inputs=[finding[1], slots], device=device)
+
+    def _model(self) -> ContactModel:
+        """What contact of the body reads of its model, as it is now."""
+        body, definition = self._body, self._body.definition
+        firmness = 0.0
+        if body.config.contact == "firm":
+            firmness = definition.material.young * definition.cage.diameter**2 / definition.contact_radius
+        return contact_model(body.model, definition.contact_material, firmness)
 
     def refresh(self) -> None:
         """Follow an edit of the surface."""
@@ -100,8 +112,7 @@ class ContactTerm:
 
     def _fill(self, state: newton.State, contacts: newton.Contacts, response: RigidResponse, dt: float) -> None:
         """Find the forces of the contacts with shapes."""
-        body = self._body
-        model, now = contact_model(body.model, body.definition.contact_material), contact_state(state)
+        body, model, now = self._body, self._model(), contact_state(state)
         inputs = [dt, soft_contacts(contacts), model, now, response, body.surface_particles.start, body.surface_rows]
         wp.launch(
             contact_kernels.fill_contacts,

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _SAMPLES = 3
 """Room for samples, in surface points."""
-_FIRMNESS = 200.0
+_FIRMNESS = 1000.0
 """Stiffness of an area that touches, in Young's modulus over the size of the body."""
 _REACH = 0.1
 """Greatest overlap that is found, in the size of the body."""
