@@ -7,16 +7,21 @@ embedded mesh for the weights and at quadrature points for the gradients (a vert
 nobody uses, and whose error would hide all others). Each correction is run with the same seeds, so on the same walks.
 The error is measured against the mean of several long runs with other seeds, whose own squared error is known from how
 they differ and is taken off. Points are grouped in tenths by their distance from the walls.
+
+With ``--page FOLDER`` it measures errors for time instead, those of fits and of finite elements too, before, half way
+through and after a cut; see ``error_for_time``. What is in the folder already is kept.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from tqdm import tqdm
 
+from benchmarks.error_page import write_error_page
 from benchmarks.progressive import add_scenes, parsed, parser_of, show
 from benchmarks.scenes import SCENES, BenchmarkScene
 from newton_cagecut import Cage, Cut, HarmonicCoordinates
@@ -119,7 +124,11 @@ def main(arguments: Sequence[str] | None = None) -> dict[tuple[str, str], Errors
     parser.add_argument("--runs", type=int, default=4, help="runs to average over, and long runs (default: 4)")
     parser.add_argument("--long", type=int, default=1 << 13, help="walks a point of each long run (default: 8192)")
     parser.add_argument("--cut", type=float, default=0.0, help="share of the first cut to make before (default: 0)")
+    parser.add_argument("--page", metavar="FOLDER", type=Path, help="measure errors for time, and write a page")
     options = parsed(parser, arguments)
+    if options.page:
+        write_error_page(options.page, options.scene, options.device)
+        return {}
     counts = {"runs": options.runs, "long_walks": options.long, "device": options.device}
     found = {}
     for scene in (SCENES[name] for name in tqdm(options.scene, unit="scene")):

@@ -14,6 +14,7 @@ _COMMANDS = {
     "validate": ("usd.validate_command", "check USD files at every sample"),
     "report": ("report.report_command", "measure error against run time, and write a page"),
     "plan": ("report.plan_command", "list what a scene needs, and what it leaves out"),
+    "warm-up": ("report.warm_up_command", "compile the kernels of a scene ahead of it"),
     "run": ("report.run_command", "simulate and cut the bodies of a USD stage"),
     "stability": ("report.stability_command", "step extreme cases, and compare with exact answers"),
 }

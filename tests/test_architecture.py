@@ -43,6 +43,7 @@ KNOWN_ROOMS = {
 # What stands inside a room, from the bottom up: each line may know those above it and itself.
 LEVELS = {
     "harmonic": (
+        ("correction_choice",),
         ("journal", "launch", "options", "point_change", "stats"),
         ("walls",),
         ("walks",),
@@ -53,7 +54,10 @@ LEVELS = {
         ("point_checks",),
         ("placing",),
         ("coordinates",),
-        ("coordinates_warm_up",),
+        (
+            "closed_form_weights",
+            "coordinates_warm_up",
+        ),
         ("__init__",),
     ),
 }

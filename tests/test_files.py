@@ -97,7 +97,7 @@ def write_seams(path) -> None:
 
 @pytest.mark.parametrize("name", ["box.obj", "box.usda"])
 def test_seams_get_points_or_are_welded(tmp_path, name):
-    """Texture coordinates are kept on copies behind the points, at one site; welded, the box is closed without them."""
+    """Texture coordinates are kept on copies behind the points, at one site; welded, on the corners of a closed box."""
     write_seams(tmp_path / name)
     split = cagecut.read_mesh(tmp_path / name)
     whole = cagecut.read_mesh(tmp_path / name, weld=True)
@@ -109,6 +109,7 @@ def test_seams_get_points_or_are_welded(tmp_path, name):
         assert {tuple(uv) for uv in face.tolist()} == {(0, 0), (1, 0), (1, 1), (0, 1)}
     assert whole.closed
     assert whole.uvs is None
+    np.testing.assert_array_equal(whole.own_corner_uvs.reshape(6, 6, 2), corners)
     np.testing.assert_allclose(whole.points, BOX, rtol=1e-6)
     assert cagecut.read_cage(tmp_path / name).faces == QUADS
 

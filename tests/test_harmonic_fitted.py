@@ -21,8 +21,8 @@ from harmonic_shapes import (
     points_inside,
     small_obstacle,
 )
-from newton_cagecut.cage import Cut
-from newton_cagecut.harmonic import HarmonicCoordinates
+from newton_cagecut.cage import Cage, Cut
+from newton_cagecut.harmonic import HarmonicCoordinates, choose_correction, closed_form_weights
 from newton_cagecut.harmonic.options import WalkOptions
 from newton_cagecut.section import Blade
 from plane_reference import PlaneReference, plane_reference
@@ -31,7 +31,7 @@ from plane_shapes import loops_of
 
 def fitted(cage, points, walks: int = 0, **options) -> HarmonicCoordinates:
     """Coordinates by the fit alone, or with walks."""
-    return HarmonicCoordinates(cage, points, walks, correction="fitted", **({"quads": "harmonic"} | options))
+    return HarmonicCoordinates(cage, points, walks, **({"correction": "fitted", "quads": "harmonic"} | options))
 
 
 def results(coordinates: HarmonicCoordinates) -> dict[str, np.ndarray]:
@@ -117,11 +117,23 @@ def test_points_on_the_boundary(name):
     np.testing.assert_allclose(sides @ opened.vertices, place, atol=3e-6)
 
 
-@pytest.mark.parametrize(("name", "bias"), [("box", 3e-6), ("l_shape", 3e-6)])
+def slit_square():
+    """A square that is slit from the top to its middle."""
+    return Cut(MAKERS["square"](), Blade([0.5, 0.5], [0.0, -1.0])).advance(to=0.5).cage
+
+
+def around_the_tip(count: int, *, nearest: float = 1e-3) -> np.ndarray:
+    """Points near the end of the square's slit, at distances that fall by powers."""
+    rng = np.random.default_rng(4)
+    angle = rng.uniform(-0.9 * np.pi, 0.9 * np.pi, count) - 0.5 * np.pi
+    return 0.5 + np.geomspace(nearest, 0.1, count)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+@pytest.mark.parametrize(("name", "bias"), [("box", 3e-6), ("l_shape", 3e-6), ("slit_square", 2e-5)])
 def test_errors_are_standard_errors(name, bias):
-    """Copies of a point spread by the errors that they tell, about the exact weights."""
-    cage = MAKERS[name]()
-    points = points_inside(cage, 12, 1)
+    """Copies of a point spread by the errors that they tell, about the exact weights, at the tip of a slit too."""
+    cage = slit_square() if name == "slit_square" else MAKERS[name]()
+    points = around_the_tip(12) if name == "slit_square" else points_inside(cage, 12, 1)
     exact = multilinear(cage, points)[0] if name == "box" else plane_reference(cage, points)[0]
     many = np.repeat(points, 24, axis=0)
     coordinates = fitted(cage, many, 96)
@@ -130,6 +142,39 @@ def test_errors_are_standard_errors(name, bias):
     spread = np.maximum(estimates.std(axis=0, ddof=1), 1e-7)
     assert 0.8 < np.median(told / spread) < 1.25
     assert (np.abs(estimates.mean(axis=0) - exact) < 4.0 * told / np.sqrt(24) + bias).all()
+
+
+def test_walks_correct_gradients_where_they_can():
+    """At the tip of a slit, where the fit is worst, walks correct its gradients; in a box their noise is held back."""
+    cage, points = slit_square(), around_the_tip(60, nearest=5e-3)
+    exact = plane_reference(cage, points)[1]
+    off = [np.sqrt(np.mean((fitted(cage, points, n, gradients=True).gradients - exact) ** 2)) for n in (0, 16, 1024)]
+    assert off[1] < 1.05 * off[0]
+    assert off[2] < 0.6 * off[0]
+    cage = box()
+    points = points_inside(cage, 60, 1)
+    exact = multilinear(cage, points)[1]
+    for walks in (2, 16, 256):
+        found = fitted(cage, points, walks, gradients=True)
+        assert np.sqrt(np.mean((found.gradients - exact) ** 2)) < 1e-3
+        assert_reproduces(found, points)
+
+
+def test_bias_of_tables():
+    """Tables of what the fit leaves over change the weights by far less than it leaves over."""
+    cut = Cut(box(), Blade([0.5, 0.5, 0.5], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]))
+    turn = np.linalg.qr(np.random.default_rng(6).normal(size=(3, 3)))[0]
+    turn[:, 0] *= np.linalg.det(turn)
+    turned = Cage((box().vertices @ turn).astype(np.float32), box().faces)  # planar as far as files tell
+    for cage, points in (
+        (cut.advance(to=0.5).cage, points_inside(box(), 20, 3)),
+        (slit_square(), around_the_tip(20)),
+        (turned, points_inside(box(), 20, 3) @ turn),
+    ):
+        found = closed_form_weights(cage, points, 64, 5, quads="harmonic" if cage.dimension == 3 else None)
+        told = np.sqrt(np.mean(found.squared_errors))
+        assert np.sqrt(np.mean(found.table_bias**2)) < 0.5 * told
+        assert np.sqrt(np.mean(found.table_bias**2)) < 1e-4
 
 
 def test_walks_of_a_slit_box():
@@ -170,6 +215,25 @@ def test_other_edits():
     walked = copies(coordinates.cage, points, 1024, 12, quads="harmonic")[0]
     error = walked.std(axis=0, ddof=1) / np.sqrt(12)
     assert np.sqrt(np.mean((coordinates.weights - walked.mean(axis=0)) ** 2)) < np.sqrt(np.mean(error**2)) + 1e-3
+
+
+def test_choice_by_size(tmp_path):
+    """By "auto" a cage that a fit is quick for has one, others are walked for; a file keeps what was chosen."""
+    points = points_inside(box(), 6, 0)
+    chosen = fitted(box(), points, 4, correction="auto")
+    assert_identical(results(chosen), results(fitted(box(), points, 4)))
+    path = tmp_path / "chosen.cagecut"
+    chosen.save(path)
+    loaded = HarmonicCoordinates.load(path, chosen.cage, points, correction="auto")
+    assert_identical(results(loaded), results(chosen))
+    large = box().triangulated()
+    while sum(map(len, large.faces)) <= 2000:
+        large = large.refine()
+    assert choose_correction(large).correction == "harmonic"
+    found = HarmonicCoordinates(large, points, 8, correction="auto")
+    assert np.array_equal(found.weights, HarmonicCoordinates(large, points, 8).weights)
+    with pytest.raises(ValueError, match="walks must be a whole number from 1 "):
+        HarmonicCoordinates(large, points, 0, correction="auto")
 
 
 def test_options():

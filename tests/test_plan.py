@@ -202,3 +202,16 @@ print(entry.on, "newton_cagecut.usd" in sys.modules)
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "False False"
+
+
+def test_plan_says_which_correction_and_why():
+    """A body of correction "auto" is fitted, without walks by default, and the plan says why; others are told of it."""
+    plans = {}
+    for correction in ("auto", "harmonic"):
+        model, solver, *_ = make_solver(correction=correction, quadrature=30)
+        plans[correction] = {entry.feature: entry for entry in solver.plan()}
+    assert plans["auto"]["fitted weights"].on
+    assert "unknowns" in plans["auto"]["fitted weights"].reason
+    assert not plans["auto"]["nested walks"].on
+    assert not plans["harmonic"]["fitted weights"].on
+    assert 'correction="auto"' in plans["harmonic"]["fitted weights"].reason

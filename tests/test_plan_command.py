@@ -13,10 +13,10 @@ from newton_cagecut.report.scene_plan import size_text
 
 SCRIPT = """
 import newton_cagecut as cagecut
-from newton_cagecut.report.stability.shapes import bar_cage, surface_in
+from newton_cagecut.report.stability.shapes import bar, surface_in
 
 def build(builder):
-    cage = bar_cage(1, (1.0, 0.5, 0.5))
+    cage = bar(1, (1.0, 0.5, 0.5)).cage()
     for label, options in (("cut", {}), ("still", {"cuttable": False, "quadrature": 0})):
         cagecut.add_cage_body(builder, cage, surface_in(cage), walks=8, label=label, **{"quadrature": 20, **options})
 """

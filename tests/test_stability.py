@@ -14,19 +14,23 @@ from PIL import Image
 from newton_cagecut import Material
 from newton_cagecut.__main__ import main
 from newton_cagecut.report.stability import stability_run, sweep
-from newton_cagecut.report.stability.answers import bending_mode, flip_time, swing, tip_deflection
+from newton_cagecut.report.stability.answers import solid_answers
+from newton_cagecut.report.stability.answers.book_answers import bending_mode, flip_time, swing, tip_deflection
+from newton_cagecut.report.stability.equal_error import equal_error
+from newton_cagecut.report.stability.kept import FILE, KeptOutcomes
 from newton_cagecut.report.stability.limits import LIMITS, limits_of
-from newton_cagecut.report.stability.outcome import Limits, Outcome, Row
-from newton_cagecut.report.stability.rows import loads, motion, starts, statics
-from newton_cagecut.report.stability.table import measure, rows
+from newton_cagecut.report.stability.outcome import Limits, Outcome, Result, Row
+from newton_cagecut.report.stability.rows import against_time, loads, motion, starts, statics
+from newton_cagecut.report.stability.shapes import bracket
+from newton_cagecut.report.stability.table import judged, measure, rows
 from newton_cagecut.report.stability.workbench import CUBE, Workbench
 
 SCRIPT = """
 import newton_cagecut as cagecut
-from newton_cagecut.report.stability.shapes import bar_cage, surface_in
+from newton_cagecut.report.stability.shapes import bar, surface_in
 
 def build(builder):
-    cage = bar_cage(1, (1.0, 0.5, 0.5))
+    cage = bar(1, (1.0, 0.5, 0.5)).cage()
     cagecut.add_cage_body(builder, cage, surface_in(cage), walks=16, quadrature=20, cuttable=False)
 """
 
@@ -52,7 +56,7 @@ def test_every_row_has_its_own_name_and_limits():
 def test_limits_judge_each_column():
     """What is out of its limit, or not known but limited, is named; what is not limited is not."""
     limits = Limits(energy_gain=0.1, recovers=True, momentum_drift=0.1, error=0.1)
-    good = {"finite": True, "energy_gain": 0.1, "recovers": True, "momentum_drift": 0.0, "iterations": 3, "error": 0.0}
+    good = {"finite": True, "energy_gain": 0.1, "recovers": True, "momentum_drift": 0.0, "missed_steps": 0, "error": 0}
     assert limits.failures(Outcome(**good)) == []
     for column, bad in (
         ("finite", False),
@@ -60,7 +64,7 @@ def test_limits_judge_each_column():
         ("energy_gain", math.inf),
         ("momentum_drift", None),
         ("error", math.nan),
-        ("iterations", 150),
+        ("missed_steps", 1),
     ):
         assert limits.failures(Outcome(**{**good, column: bad})) == [column]
     assert Limits().failures(Outcome(energy_gain=1.0)) == []
@@ -132,7 +136,7 @@ def test_a_row_that_breaks_fails_alone(bench):
         raise ValueError("no such bar")
 
     row = Row(name="broken", group="Motion", run=broken, limits=Limits(), quick=True)
-    result = measure(row, bench)
+    result = judged(row, *measure(row, bench))
     assert result.verdict == "FAIL"
     assert "no such bar" in result.outcome.note
 
@@ -191,3 +195,82 @@ def test_an_unknown_scene_is_refused(scene, text, tmp_path, capsys):
     assert main(["stability", scene, "--out", str(tmp_path / "new")]) == 1
     assert text in capsys.readouterr().err
     assert not (tmp_path / "new").exists()
+
+
+def test_a_stopped_run_goes_on_from_where_it_was(tiny, tmp_path, monkeypatch):
+    """What was measured before the stop is not measured again, and nothing but the page is left in the end."""
+    table, measured = stability_run.rows(quick=True, scene=False), []
+
+    def counted(row: Row, bench: Workbench) -> tuple[Outcome, float]:
+        if len(measured) == 1:
+            measured.append("stopped")
+            raise KeyboardInterrupt
+        measured.append(row.name)
+        return measure(row, bench)
+
+    monkeypatch.setattr(stability_run, "measure", counted)
+    with pytest.raises(KeyboardInterrupt):
+        stability_run.measure_all(None, tmp_path, quick=True)
+    assert (tmp_path / FILE).exists()
+    with pytest.raises(ValueError, match="other settings"):
+        stability_run.measure_all(None, tmp_path, quick=False)
+    assert stability_run.measure_all(None, tmp_path, quick=True) == 1
+    assert measured == [table[0].name, "stopped", *(row.name for row in table[1:])]
+    assert {path.name for path in tmp_path.iterdir()} == {"stability.md", "stability.json", "stability.png"}
+
+
+@pytest.mark.parametrize(
+    "outcome",
+    [
+        Outcome(finite=False, energy_gain=math.inf, error=math.nan, note="gone"),
+        Outcome(finite=True, iterations=3, missed_steps=0, limited_steps=2, step_count=5, milliseconds=0.5),
+    ],
+)
+def test_kept_outcomes_come_back_as_they_were(outcome, tmp_path):
+    """Numbers that JSON cannot hold too."""
+    KeptOutcomes(tmp_path, {}, {}).outcome("row", lambda: (outcome, 2.0))
+    found, seconds = KeptOutcomes(tmp_path, {}, {}).outcome("row", lambda: pytest.fail("measured again"))
+    assert seconds == 2.0
+    assert repr(found) == repr(outcome)
+
+
+def test_boxes_make_a_closed_cage_and_their_own_volume():
+    """An L in segments: every edge has two faces, and what is inside is what is filled."""
+    blocks = bracket(3, 0.6, 0.2)
+    cage = blocks.cage()
+    corners = cage.vertices[cage.simplices]
+    volume = np.einsum("na,na->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
+    assert volume == pytest.approx(0.04 * (0.6 + 0.6 + 0.2), rel=1e-12)
+    edges = np.sort(np.concatenate([cage.simplices[:, pair] for pair in ((0, 1), (1, 2), (2, 0))]), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+    inside = blocks.contains(np.array([(0.1, 0.0, 0.1), (0.7, 0.0, 0.75), (0.1, 0.0, 0.75)]))
+    assert inside.tolist() == [True, True, False]
+
+
+def test_the_finite_elements_know_what_books_know():
+    """Bending by Timoshenko without Poisson's effect, and Saint-Venant's torsion of a square, up to the held ends."""
+    size = (1.0, 0.2, 0.2)
+    expected = tip_deflection(1.0, size=size, young=1.0, poisson=0.0)
+    assert solid_answers.bar_deflection(size, 0.0, 2) == pytest.approx(expected, rel=0.005)
+    torsion = 0.5 * 0.1406 * 0.2**4 / (2.0 * 1.3) * 0.01**2
+    assert solid_answers.torsion_energy(size, 0.3, 0.01) == pytest.approx(torsion, rel=0.015)
+
+
+def test_equal_error_takes_the_cheapest_that_is_near_enough():
+    """A solver that gets there dearly, one that does not, and rows that have no part in it."""
+
+    def result(name: str, error: float | None, milliseconds: float) -> Result:
+        row = Row(name=name, group="", run=lambda bench: Outcome(), limits=None, quick=False)
+        outcome = Outcome(error=error, milliseconds=milliseconds)
+        return Result(row=row, outcome=outcome, failures=(), seconds=0.0)
+
+    names = [name for name, _, _ in against_time.ROWS if "Poisson 0.3," in name]
+    ours = [name for name in names if name.startswith("SolverCageCut")]
+    theirs = [name for name in names if name.startswith("SolverVBD")]
+    results = [result(ours[0], 0.3, 1.0), result(ours[1], 0.01, 4.0), result(ours[2], 0.01, 3.0)]
+    results += [result(theirs[0], 0.4, 2.0), result("spin", 0.0, 0.1)]
+    ((title, head, body),) = equal_error(results)
+    assert title.endswith("Poisson 0.3")
+    assert head == ["error at most", "SolverCageCut", "SolverVBD"]
+    assert [row[1].split(" (")[0] for row in body] == ["1", "3", "3", "3", "3"]
+    assert [row[2].startswith("not reached") for row in body] == [False, True, True, True, True]

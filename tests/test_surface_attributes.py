@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""What a cut surface carries with it, and the surfaces that cannot be cut."""
+"""What a cut surface carries with it."""
 
 from __future__ import annotations
 
@@ -54,19 +54,6 @@ def test_caps_have_their_own_corners():
     bare = Surface(now.points, now.triangles)
     np.testing.assert_array_equal(bare.corner_uvs(walls), 0.0)
     np.testing.assert_allclose(np.linalg.norm(bare.corner_normals(walls)[~cap], axis=2), 1.0, atol=1e-12)
-
-
-def test_surfaces_that_branch_are_refused():
-    """Edges with three triangles, or with two in the same direction, are refused with what to do."""
-    points = np.array([[0.2, 0.2, 0.2], [0.8, 0.2, 0.2], [0.5, 0.8, 0.2], [0.5, 0.2, 0.8], [0.5, 0.4, 0.6]])
-    plane = Cut(box(), BLADE).plane
-    three = Surface(points, [[0, 1, 2], [1, 0, 3], [0, 1, 4]])
-    with pytest.raises(ValueError, match=r"edge \(0, 1\) joins triangles \[0, 1, 2\]"):
-        SurfaceCut(three, plane, 6)
-    same = Surface(points, [[0, 1, 2], [0, 1, 3]])
-    with pytest.raises(ValueError, match=r"edge \(0, 1\) joins triangles \[0, 1\]"):
-        SurfaceCut(same, plane, 6)
-    SurfaceCut(Surface(points, [[0, 1, 2], [1, 0, 3]]), plane, 6)
 
 
 def test_normals_are_checked():

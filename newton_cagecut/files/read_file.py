@@ -52,7 +52,8 @@ def read_mesh(
             stay as they stand.
         name: The mesh to read: its name, or in USD the path of a prim with meshes below it.
         weld: Whether points at one place are joined, as those of STL always are. Texture coordinates that differ
-            there are left out, normals become their mean. Without, surfaces know seams by where their points stand.
+            there become those of corners, normals become their mean. Without, surfaces know seams by where their points
+            stand.
 
     Returns:
         The surface [m].
@@ -66,16 +67,22 @@ def read_mesh(
     weld, (path, meshes) = as_flag(weld, "weld"), _read(path, scale, up_axis, name)
     cages = [] if name is not None else _cages_of(meshes)
     mesh = joined([used_points(mesh) for mesh in meshes if mesh not in cages] if cages else meshes)
-    if weld or path.suffix.lower() == ".stl":
-        mesh = welded(mesh)
-    triangles = polygon_triangles(mesh.points, mesh.counts, mesh.indices)
-    triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
-    if len(triangles) == 0:
-        raise ValueError(f"{path} has no triangle whose points differ")
     if mesh.uvs is not None and not np.isfinite(mesh.uvs).all():
         warnings.warn(f"{path}: its texture coordinates are not finite; they are left out", stacklevel=2)
         mesh = replace(mesh, uvs=None)
-    return Surface(mesh.points, triangles, uvs=mesh.uvs, normals=_unit_normals(mesh, triangles))
+    corners = polygon_triangles(mesh.points[mesh.indices], mesh.counts, np.arange(len(mesh.indices)))
+    uvs, corner_uvs = mesh.uvs, None if mesh.uvs is None else mesh.uvs[mesh.indices]
+    if weld or path.suffix.lower() == ".stl":
+        mesh = welded(mesh)
+        uvs = mesh.uvs
+    triangles = mesh.indices[corners]
+    kept = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    if not kept.any():
+        raise ValueError(f"{path} has no triangle whose points differ")
+    triangles = triangles[kept]
+    if uvs is None and corner_uvs is not None:
+        uvs = corner_uvs[corners[kept]]
+    return Surface(mesh.points, triangles, uvs=uvs, normals=_unit_normals(mesh, triangles))
 
 
 def read_cage(

@@ -13,6 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
+from .lift import lifted
+
 _NO_VOLUME = 1e-12
 
 
@@ -34,6 +36,17 @@ class PolygonMesh:
         self.vertices = vertices
         self.face_start = face_start
         self.face_vertex = face_vertex
+
+    @classmethod
+    def of_triangles(cls, points: np.ndarray, triangles: np.ndarray) -> PolygonMesh:
+        """Triangles in space; those of the plane lie at z = 0.
+
+        Args:
+            points: Positions, shape (point_count, dimension) [m].
+            triangles: Point ids, shape (triangle_count, 3).
+        """
+        start = np.arange(0, 3 * len(triangles) + 1, 3)
+        return cls(lifted(points), start, triangles.reshape(-1).astype(np.int64))
 
     def extended(self, vertices: np.ndarray, face_size: np.ndarray, face_vertex: np.ndarray) -> PolygonMesh:
         """The mesh with further vertices and faces behind its own.

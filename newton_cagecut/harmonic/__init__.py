@@ -5,14 +5,17 @@
 
 from .cache.domain import Domain
 from .cache.snapshot import CoordinatesSnapshot
+from .closed_form_weights import ClosedFormWeights, closed_form_weights
 from .coordinates import HarmonicCoordinates
 from .coordinates_warm_up import warm_up_coordinates
+from .correction_choice import choose_correction, chosen_correction
 from .journal import Journal
 from .options import check_options
 from .point_change import PointChange
 from .stats import UpdateStats
 
 __all__ = [
+    "ClosedFormWeights",
     "CoordinatesSnapshot",
     "Domain",
     "HarmonicCoordinates",
@@ -20,5 +23,8 @@ __all__ = [
     "PointChange",
     "UpdateStats",
     "check_options",
+    "choose_correction",
+    "chosen_correction",
+    "closed_form_weights",
     "warm_up_coordinates",
 ]

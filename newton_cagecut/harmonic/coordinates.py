@@ -56,7 +56,7 @@ class HarmonicCoordinates:
         cuttable: Whether to keep the walk cache that updates need (by default 64 bytes a walk, 32 in the plane).
         device: Where to walk; Warp's current device by default, or the domain's.
         correction: "harmonic" (control variates), "affine" (paper, equation 5), "none" (plain means) or "fitted": a
-            boundary fit, plus the mean of what it leaves over where walks land; gradients are the fit's alone.
+            boundary fit and the mean of what it leaves over where walks land; "auto": fitted unless the cage is large.
         bounds: Bounding volume of a walk: "dop18", "dop26", "aabb" or "sphere". Smaller ones send more walks to be
             walked again; the results are identical.
         distance: "grid" (candidates) or "all" (every wall): identical results. By default "grid", or the domain's.
@@ -98,8 +98,8 @@ class HarmonicCoordinates:
         progress: Callable[[float], None] | None = None,
     ) -> None:
         self.domain = domain_of(cage, quads=quads, distance=distance, device=device)
-        options = WalkOptions(walks, seed, correction, bounds, epsilon, max_steps, degree)
         self._state = state = self.domain.now
+        options = WalkOptions(walks, seed, correction, bounds, epsilon, max_steps, degree).chosen_for(state.cage)
         points = checked_points(points, state.cage.dimension)
         count = len(points)
         room = checked_room(point_capacity, vertex_capacity, gradients, cuttable, state.cage, count, walks)

@@ -6,15 +6,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import warp as wp
 
+from ..cage import Cage
 from ..geometry import as_choice, as_instance, is_number, shown
+from .correction_choice import chosen_correction
 
 BOUNDS = ("dop18", "dop26", "aabb", "sphere")
-CORRECTIONS = ("harmonic", "affine", "none", "fitted")
+CORRECTIONS = ("harmonic", "affine", "none", "fitted", "auto")
+"""What can be asked for; in the place of "auto" stands one of the others before anything is walked."""
 DISTANCES = ("grid", "all")
 QUADS = ("mean_value", "harmonic")
 
@@ -39,7 +42,7 @@ class WalkOptions:
         as_choice(self.correction, CORRECTIONS, "correction")
         as_choice(self.bounds, BOUNDS, "bounds")
         for name, low, high in (
-            ("walks", 0 if self.correction == "fitted" else 1, 1 << 24),
+            ("walks", 0 if self.correction in ("fitted", "auto") else 1, 1 << 24),
             ("seed", 0, (1 << 32) - 1),
             ("max_steps", 1, 1 << 16),
             ("degree", 1, 3),
@@ -50,6 +53,14 @@ class WalkOptions:
                 raise ValueError(f"{name} must be a whole number from {low} to {high}, not {shown(value)}")
         if not is_number(self.epsilon) or not 1.0e-6 <= float(self.epsilon) <= 0.1:
             raise ValueError(f"epsilon must lie between 1e-6 and 0.1 (relative to the cage), not {shown(self.epsilon)}")
+
+    def chosen_for(self, cage: Cage) -> WalkOptions:
+        """These options with a correction that suits a cage in the place of "auto".
+
+        Args:
+            cage: The cage.
+        """
+        return replace(self, correction=chosen_correction(self.correction, cage))
 
 
 def as_device(device: wp.context.Devicelike) -> wp.Device:

@@ -31,6 +31,22 @@ def machine_of(device: wp.context.Device) -> dict:
     }
 
 
+def chosen_device(name: str | None) -> wp.Device:
+    """The device of a name given on the command line, Warp's own choice without one.
+
+    Args:
+        name: The name.
+
+    Raises:
+        ValueError: There is no such device.
+    """
+    try:
+        return wp.get_device(name)
+    except (RuntimeError, ValueError):
+        known = ", ".join(device.alias for device in wp.get_devices())
+        raise ValueError(f"there is no device {name!r}; there are {known}") from None
+
+
 def _version(package: str) -> str | None:
     try:
         return importlib.metadata.version(package)

@@ -24,14 +24,15 @@ class RecordStore:
         settings: What all measurements have in common. Records that are there already must have been made with equal
             ones.
         machine: What they are made on, and versions; likewise.
+        file: The file's name.
 
     Raises:
         ValueError: The folder holds a report of other settings or another machine, or one that cannot be read. Nothing
             has changed then.
     """
 
-    def __init__(self, folder: Path, settings: dict, machine: dict) -> None:
-        self.folder, self.settings, self.machine = folder, settings, machine
+    def __init__(self, folder: Path, settings: dict, machine: dict, *, file: str = FILE) -> None:
+        self.folder, self.settings, self.machine, self._file = folder, settings, machine, file
         self._records: dict[str, Record] = {}
         folder.mkdir(parents=True, exist_ok=True)
         if self.path.exists():
@@ -43,7 +44,7 @@ class RecordStore:
     @property
     def path(self) -> Path:
         """The file."""
-        return self.folder / FILE
+        return self.folder / self._file
 
     @property
     def records(self) -> list[Record]:
@@ -53,6 +54,10 @@ class RecordStore:
     def __contains__(self, key: str) -> bool:
         """Whether there is a record of a key."""
         return key in self._records
+
+    def __getitem__(self, key: str) -> Record:
+        """The record of a key."""
+        return self._records[key]
 
     def add(self, record: Record) -> None:
         """Keep a record; the file has it when this returns.
@@ -79,7 +84,7 @@ class RecordStore:
                 for key, record in self._records.items()
             },
         }
-        part = self.path.with_name(f".{FILE}.part")
+        part = self.path.with_name(f".{self._file}.part")
         part.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
         os.replace(part, self.path)
 

@@ -64,22 +64,13 @@ def run(options: Namespace) -> int:
 
     wp.config.quiet = True  # before what imports kernels, for which Warp starts
     from .effort import FULL, QUICK
+    from .machine import chosen_device
     from .measuring import measure_all
     from .scenes.scene import load_scenes
 
-    device = _device(options.device)
+    device = chosen_device(options.device)
     scenes = load_scenes(options.scenes, QUICK_SCENES if options.quick else ())
     return measure_all(scenes, QUICK if options.quick else FULL, device, options.out)
-
-
-def _device(name: str | None) -> object:
-    import warp as wp
-
-    try:
-        return wp.get_device(name)
-    except (RuntimeError, ValueError):
-        known = ", ".join(device.alias for device in wp.get_devices())
-        raise ValueError(f"there is no device {name!r}; there are {known}") from None
 
 
 def _require_extra() -> None:

@@ -13,6 +13,7 @@ import newton
 import warp as wp
 
 from ..solver import PlanEntry, SolverCageCut
+from .machine import chosen_device
 from .scenes.building import build_of
 
 _PACKAGE = __package__.split(".")[0]
@@ -31,7 +32,7 @@ def plan_text(scene: str, *, device: str | None = None, walks: int | None = None
         ValueError: There is no such scene or device, or it has no cage bodies.
     """
     wp.config.log_level = wp.LOG_WARNING
-    with wp.ScopedDevice(_device(device)) as where:
+    with wp.ScopedDevice(chosen_device(device)) as where:
         solver = _stepped(build_of(scene, walks=walks))
         plan = solver.plan()
         kernels = loaded_kernels()
@@ -62,14 +63,6 @@ def _stepped(build: object) -> SolverCageCut:
     pipeline.collide(state, contacts)
     solver.step(state, other, None, contacts, 1.0 / 60.0)
     return solver
-
-
-def _device(name: str | None) -> wp.Device:
-    try:
-        return wp.get_device(name)
-    except (RuntimeError, ValueError):
-        known = ", ".join(device.alias for device in wp.get_devices())
-        raise ValueError(f"there is no device {name!r}; there are {known}") from None
 
 
 def _entry_lines(plan: Sequence[PlanEntry]) -> list[str]:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Collection, Mapping, Sequence
 
 import newton
@@ -47,6 +48,20 @@ def as_surface(
     if isinstance(mesh, tuple) and len(mesh) == 2:
         return Surface(*mesh, weld=weld, data=data)
     raise TypeError(f"mesh must be a Surface, a newton.Mesh or (points, triangles), got {type(mesh).__name__}")
+
+
+def check_cuttable(surface: Surface) -> None:
+    """Warn of what was done to a mesh so that it can be cut, and of what cuts will leave open.
+
+    Args:
+        surface: The surface of a body.
+
+    Raises:
+        ValueError: A sheet of it touches itself along an edge and cannot be cut.
+    """
+    surface.refuse_branches()
+    if surface.notes:
+        warnings.warn(f"the mesh of the body: {'; '.join(surface.notes)}", stacklevel=3)
 
 
 def as_material(material: Material | None) -> Material:
@@ -132,7 +147,7 @@ def as_walks(walks: int | None, seed: int, options: dict[str, object]) -> int:
     """Walks a point, checked with the other options of the body's coordinates.
 
     Args:
-        walks: What was passed; None for 256 on a CPU and 2048 (the paper's) on CUDA.
+        walks: What was passed; None for 256 on a CPU and 2048 (the paper's) on CUDA, or 0 of fitted weights.
         seed: Seed.
         options: Further keyword options of ``HarmonicCoordinates``.
 
@@ -140,6 +155,8 @@ def as_walks(walks: int | None, seed: int, options: dict[str, object]) -> int:
         TypeError: There is no such option.
         ValueError: A value is out of its range.
     """
+    if walks is None and options.get("correction") == "fitted":
+        walks = 0
     if walks is None:
         walks = 2048 if wp.get_device().is_cuda else 256
     check_options({"walks": walks, "seed": seed, **options}, "add_cage_body")

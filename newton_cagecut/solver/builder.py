@@ -21,6 +21,7 @@ import warp as wp
 from ..cage import Cage, check_inside
 from ..elastic import Material
 from ..geometry import as_flag, as_instance
+from ..harmonic import chosen_correction
 from ..surface import Surface
 from . import body_arguments as arguments
 from .body.capacity import Capacity
@@ -125,11 +126,12 @@ def add_cage_body(
         velocity: Initial velocity [m/s]; fixed vertices do not travel with it.
         fixed: Cage vertices that no step moves: their indices, or a mask over all; to move them, write targets
             to ``control.cagecut.target_q``. A vertex that a cut makes on a face, among fixed ones, is fixed too.
-        walks: Walks a point; 256 on a CPU and 2048 (the paper's) on CUDA by default.
+        walks: Walks a point; 256 on a CPU and 2048 (the paper's) on CUDA by default, none of fitted weights.
         quadrature: Wanted number of quadrature points, by default 8 for each cage vertex and at least 300. 0 makes a
             body that is moved by its cage vertices alone, without elasticity.
         capacity: Room for cuts, by default ``Capacity.for_cuts(cage, surface)``, for a dozen of them.
-        cuttable: Whether the body can be cut. Without, no walk cache is kept.
+        cuttable: Whether the body can be cut. Without, no walk cache is kept. What was done to the mesh for it, and
+            where it is open, so that cuts make no caps, is said in a warning: ``surface.notes``.
         contact_radius: Makes the surface points collide as particles of this radius [m]; None for no contact.
         contact_stiffness: Stiffness of each surface point [N/m], which the mean with the shape's is taken of; None for
             ``model.soft_contact_ke``.
@@ -154,7 +156,7 @@ def add_cage_body(
     Raises:
         TypeError: An argument has the wrong type.
         ValueError: Attributes are not registered, a mesh point lies outside the cage, the mesh is not of the cage's
-            dimension, or a value is out of range.
+            dimension or cannot be cut, or a value is out of range.
     """
     as_instance(builder, newton.ModelBuilder, "builder")
     as_instance(cage, Cage, "cage")
@@ -163,6 +165,11 @@ def add_cage_body(
     surface = arguments.as_surface(mesh, weld=weld, data=data)
     thickness = arguments.as_thickness(thickness, cage, surface)
     check_inside(cage, surface.points)
+    cuttable = as_flag(cuttable, "cuttable")
+    if cuttable:
+        arguments.check_cuttable(surface)
+    if "correction" in options:
+        options["correction"] = chosen_correction(options["correction"], cage)
     labels = builder.custom_attributes["cagecut:body_label"].values or []
     index = len(labels)
     definition = BodyDefinition(
@@ -174,7 +181,7 @@ def add_cage_body(
         walks=arguments.as_walks(walks, seed, options),
         seed=seed,
         quadrature_count=arguments.as_quadrature_count(quadrature, cage.vertex_count),
-        cuttable=as_flag(cuttable, "cuttable"),
+        cuttable=cuttable,
         capacity=arguments.as_capacity(capacity, cage, surface, cuttable=cuttable),
         contact_radius=arguments.as_contact_radius(contact_radius, cage, quadrature),
         contact_material=arguments.as_contact_material(

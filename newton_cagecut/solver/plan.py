@@ -13,6 +13,7 @@ import sys
 from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
+from ..harmonic import choose_correction
 from .held_arrays import HeldArray, held_arrays
 
 if TYPE_CHECKING:
@@ -150,8 +151,12 @@ def _is_fitted(body: SimulatedBody) -> bool:
 
 
 def _fit_reason(body: SimulatedBody) -> str:
-    """Why there is a boundary fit, or none."""
-    return 'correction="fitted"' if _is_fitted(body) else "the weights are walked for"
+    """Why there is a boundary fit, or none, and what suits the cage."""
+    choice = choose_correction(body.definition.cage)
+    if _is_fitted(body):
+        return f'correction="fitted"; {choice.reason}'
+    hint = ', which correction="auto" would choose' if choice.correction == "fitted" else ""
+    return f"the weights are walked for; {choice.reason}{hint}"
 
 
 def _cache_reason(body: SimulatedBody) -> str:

@@ -69,6 +69,7 @@ class _OpenSurface:
             normals=None if normals is None else units(normals),
             triangle_cap=np.concatenate([base.triangle_cap[self.owner], caps]),
             cap_side=np.concatenate([base.cap_side[self.owner], sides]),
+            is_parted=base.is_parted,
             attributes=base.attributes.mapped(
                 point=lambda values: self._point_values(values, source),
                 corner=self._corner_values,

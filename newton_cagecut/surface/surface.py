@@ -20,14 +20,15 @@ from ..geometry import (
     as_finite,
     as_indices,
     as_sequence,
-    lifted,
     triangle_normals,
     units,
     winding_numbers,
 )
 from .attributes import Attributes
-from .surface_arguments import as_labels, as_point_values, as_rows, as_triangles, as_uvs, as_weld, check_flat
-from .welding import weld_seams
+from .preparing.draft import Draft
+from .preparing.open_edges import open_notes
+from .preparing.repairs import Repairs
+from .surface_arguments import as_rows
 
 _CANCELLED = 1e-9
 _NO_LENGTH = 1e-30
@@ -55,8 +56,12 @@ class Surface:
         """Validate and build a surface.
 
         Open edges that lie on each other, end on end and in opposite directions, are a seam: their points move as one.
-        Edges that are closed as they are given are left alone, and so are points on walls. Triangles that a seam makes
-        a line are left out.
+        Edges that are closed as they are given are left alone, and so are points on walls.
+
+        Triangles that use a point twice, as given or along a seam, or that are there twice, are left out. The others
+        become sheets of one orientation: those that run the other way than most around them are turned, and where an
+        edge has three or more, or points only touch, each sheet gets a point of its own behind the others.
+        :attr:`notes` tells of all this.
 
         Args:
             points: Rest positions, shape (point_count, 3), or (point_count, 2) in the plane [m].
@@ -78,18 +83,18 @@ class Surface:
             TypeError: If something is not numbers, or the triangles not integers.
             ValueError: If a shape, a value or an index is wrong; the text names the culprit.
         """
-        self.points = as_rows(points, "points", (3, 2))
-        self.triangles = as_triangles(triangles, len(self.points))
-        if self.dimension == 2:
-            check_flat(self.points[self.triangles], normals)
-        self.uvs, self.own_corner_uvs = as_uvs(uvs, len(self.points), len(self.triangles))
-        self.normals = as_point_values(normals, "normals", 3, len(self.points))
-        self.attributes = Attributes.of(data, len(self.points), len(self.triangles))
-        self.triangle_cap = as_labels(triangle_cap, "triangle_cap", len(self.triangles))
-        self.cap_side = np.zeros(len(self.triangles), dtype=np.int8)
-        self.site_key = as_labels(point_key, "point_key", len(self.points))
-        self.site_points, self.point_site = self.points, None
-        self._join_seams(as_weld(weld, self.points))
+        draft = Draft(
+            points=as_rows(points, "points", (3, 2)),
+            triangles=triangles,
+            uvs=uvs,
+            normals=normals,
+            triangle_cap=triangle_cap,
+            point_key=point_key,
+            data=data,
+        )
+        draft.prepare(weld)
+        vars(self).update(draft.arrays)
+        self._repairs = draft.repairs
         self._freeze()
 
     @classmethod
@@ -107,6 +112,7 @@ class Surface:
         triangle_cap: np.ndarray,
         cap_side: np.ndarray,
         attributes: Attributes,
+        is_parted: bool,
     ) -> Surface:
         """A surface that a cut made, taken as it is."""
         surface = cls.__new__(cls)
@@ -114,35 +120,9 @@ class Surface:
         surface.site_points, surface.site_key = points if point_site is None else sites, site_key
         surface.uvs, surface.own_corner_uvs, surface.normals = uvs, own_corner_uvs, normals
         surface.triangle_cap, surface.cap_side, surface.attributes = triangle_cap, cap_side, attributes
+        surface.is_parted, surface._repairs = is_parted, Repairs()
         surface._freeze()
         return surface
-
-    def _join_seams(self, tolerance: float) -> None:
-        """Find the sites of points; without seams each point is one."""
-        if tolerance < 0.0:
-            return
-        first = weld_seams(_spatial_mesh(self.points, self.triangles), tolerance, apart=self.site_key >= 0)
-        kept, site = np.unique(first, return_inverse=True)
-        if len(kept) == self.point_count:
-            return
-        corners = first[self.triangles]
-        if (corners == corners[:, :1]).all():
-            raise ValueError("all points of the surface's triangles coincide; there is no surface")
-        self._keep_triangles((corners != np.roll(corners, 1, axis=1)).all(axis=1))
-        self.points = self.points[first]
-        self.site_points, self.site_key = self.points[kept], self.site_key[kept]
-        self.point_site = site.reshape(-1)
-
-    def _keep_triangles(self, kept: np.ndarray) -> None:
-        """Leave out all triangles but some, a mask."""
-        if kept.all():
-            return
-        for name in ("triangles", "own_corner_uvs", "triangle_cap", "cap_side"):
-            values = getattr(self, name)
-            setattr(self, name, None if values is None else values[kept])
-        self.attributes = self.attributes.mapped(
-            point=lambda values: values, corner=lambda values: values[kept], triangle=lambda values: values[kept]
-        )
 
     def _freeze(self) -> None:
         arrays = (self.points, self.triangles, self.uvs, self.own_corner_uvs, self.normals, self.point_site)
@@ -208,6 +188,23 @@ class Surface:
             return np.arange(self.point_count)
         return np.unique(self.point_site, return_index=True)[1]
 
+    @cached_property
+    def point_place(self) -> np.ndarray | None:
+        """Site with which each point moves, shape (point_count,); None if it is the one of the same number.
+
+        Sheets that touch have sites of their own at one place, with walks of their own; the points there move with the
+        first of them, until a cut takes them apart, so that no gap opens.
+        """
+        if not self.is_parted:
+            return self.point_site
+        key = np.column_stack([self.site_points, self.site_key])
+        own = np.flatnonzero(self.on_several_cuts(np.arange(self.site_count)))
+        apart = np.zeros(self.site_count)
+        apart[own] = 1.0 + own
+        _, first, place = np.unique(np.column_stack([key, apart]), axis=0, return_index=True, return_inverse=True)
+        place = first[place.reshape(-1)]
+        return place if self.point_site is None else place[self.point_site]
+
     @property
     def point_key(self) -> np.ndarray:
         """``2 * wall + side`` of the wall on which each point lies, -1 inside, shape (point_count,)."""
@@ -216,7 +213,7 @@ class Surface:
     @cached_property
     def mesh(self) -> PolygonMesh:
         """The triangles of the sites with their half-edges, in space; a flat mesh lies in the plane z = 0."""
-        return _spatial_mesh(self.site_points, self.site_triangles)
+        return PolygonMesh.of_triangles(self.site_points, self.site_triangles)
 
     @property
     def triangle_key(self) -> np.ndarray:
@@ -282,8 +279,17 @@ class Surface:
             raise ValueError(f"walls: a cap is on wall {last}, and there are {len(walls)}; pass cage.walls of this cut")
         return walls
 
+    @cached_property
+    def notes(self) -> tuple[str, ...]:
+        """What was done to the mesh so that it can be cut, and what cuts will leave open, a sentence each."""
+        if self.dimension == 2 or self.closed:
+            return tuple(self._repairs.notes)
+        return (*self._repairs.notes, *open_notes(self.mesh))
+
     def refuse_branches(self) -> None:
         """Raise if an edge has more than two triangles, or two that run along it in the same direction.
+
+        Sheets have none, but for one that touches itself along an edge and hangs together around both of its ends.
 
         Raises:
             ValueError: If so; a cut could not tell which triangles stay together.
@@ -297,8 +303,8 @@ class Surface:
             a, b = divmod(int(key[bad[0]]), mesh.vertex_count)
             triangles = mesh.face[order[first[bad[0]] : first[bad[0]] + count[bad[0]]]].tolist()
             raise ValueError(
-                f"the surface cannot be cut: edge ({a}, {b}) joins triangles {triangles}, which is not a manifold with "
-                f"one orientation ({len(bad)} such edges); give each sheet points of its own and one orientation"
+                f"the surface cannot be cut: edge ({a}, {b}) joins triangles {triangles}, which touch along it and "
+                f"hang together around both of its ends ({len(bad)} such edges); divide the edge in two of them"
             )
 
     @property
@@ -389,9 +395,3 @@ class Surface:
             found = np.isfinite(around).any(axis=1)
             solid[inner[found]] = around[found].argmin(axis=1)
         return solid[mesh.face_component]
-
-
-def _spatial_mesh(points: np.ndarray, triangles: np.ndarray) -> PolygonMesh:
-    """Triangles with their half-edges, in space."""
-    start = np.arange(0, 3 * len(triangles) + 1, 3)
-    return PolygonMesh(lifted(points), start, triangles.reshape(-1).astype(np.int64))

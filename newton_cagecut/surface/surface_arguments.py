@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry import as_floats, as_integers, as_number, as_points, check_finite
-from .welding import WELD
+from .preparing.welding import WELD
 
 _FLAT = 1e-13
 
@@ -66,16 +66,13 @@ def as_weld(weld: float | None, points: np.ndarray) -> float:
 
 
 def as_triangles(values: np.ndarray, point_count: int) -> np.ndarray:
-    """Triangles, whose points are there and differ."""
+    """Triangles, whose points are there."""
     array = as_integers(values, "triangles of the surface", shape=("triangle_count", 3))
     bad = np.flatnonzero(((array < 0) | (array >= point_count)).any(axis=1))
     if len(bad):
         raise ValueError(
             f"triangle {bad[0]} of the surface is {array[bad[0]].tolist()}, but there are only {point_count} points"
         )
-    bad = np.flatnonzero((array == np.roll(array, 1, axis=1)).any(axis=1))
-    if len(bad):
-        raise ValueError(f"triangle {bad[0]} of the surface uses a point twice: {array[bad[0]].tolist()}; remove it")
     return array.astype(np.int32)
 
 

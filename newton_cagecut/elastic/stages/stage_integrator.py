@@ -13,8 +13,8 @@ from ..solve.linear_solver import SolveLimits
 from ..solve.point_forces import PointForces
 from . import rigid_fit, stage_kernels, start_forces, start_limit
 from .line_search import LineSearch
-from .scheme import Stage, courses_of
-from .stage_arrays import make_piece_arrays, make_stage_arrays, make_stage_factors
+from .scheme import Scheme, courses_of
+from .stage_arrays import StageFactors, make_piece_arrays, make_stage_arrays, make_stage_factors
 from .step_record import StepRecord
 
 
@@ -34,7 +34,7 @@ class StageIntegrator(ImplicitIntegrator):
         self,
         body: BodyArrays,
         model: str,
-        scheme: tuple[Stage, ...],
+        scheme: Scheme,
         *,
         newton_iterations: int,
         limits: SolveLimits,
@@ -44,6 +44,7 @@ class StageIntegrator(ImplicitIntegrator):
         self.stage, self.pieces = make_stage_arrays(body), make_piece_arrays(body)
         self.line_search = LineSearch(self, model, self.stage, self.pieces)
         self._newton_iterations = newton_iterations
+        self._not_touching = wp.zeros(1, dtype=int, device=self.device)
         self._record_launches(scheme)
 
     def step(
@@ -59,8 +60,9 @@ class StageIntegrator(ImplicitIntegrator):
         """Advance the vertices by one step; see ``ReducedSystem.step``."""
         body, arrays, stage = self.body, self.arrays, self.stage
         loads = [gravity, self._no_forces if forces is None else forces]
+        touching = self._not_touching if points is None else points.count
         self._begin_record.launch()
-        inputs = [wp.float64(dt), *before, *loads, body, arrays, stage, self.record]
+        inputs = [wp.float64(dt), *before, *loads, touching, body, arrays, stage, self.record]
         self._launch(stage_kernels.begin_stages, inputs)
         for launch in self._limit_launches:
             launch.launch()
@@ -96,7 +98,7 @@ class StageIntegrator(ImplicitIntegrator):
         self.line_search.launch()
         self._take_solution.launch()
 
-    def _record_launches(self, scheme: tuple[Stage, ...]) -> None:
+    def _record_launches(self, scheme: Scheme) -> None:
         """Prepare the launches whose arguments never change."""
         body, step, stage, pieces, system = self.body, self.arrays, self.stage, self.pieces, self.system
         moving, started = [body, stage, pieces], [body, step, stage, pieces]
@@ -126,14 +128,14 @@ class StageIntegrator(ImplicitIntegrator):
         )
         self._stage_launches = tuple(
             (
-                self._once(stage_kernels.set_scales, [make_stage_factors(factors, course), body, step]),
+                self._once(stage_kernels.set_scales, [*factors, body, step]),
                 *self._strain_launches,
                 begin_stage,
                 find_centers,
-                *(start_launches if factors.start_share else ()),
+                *(start_launches if free.start_share else ()),
                 *guess_launches,
             )
-            for factors, course in zip(scheme, courses_of(scheme), strict=True)
+            for free, factors in zip(scheme.free, _factors(scheme), strict=True)
         )
         everything = [body, step, stage, system]
         self._add_point_residual = self.solver.adding_residual(stage.moved_single, stage.earlier_velocity)
@@ -144,3 +146,9 @@ class StageIntegrator(ImplicitIntegrator):
         self._multiply_inertia = self._per_vertex(stage_kernels.multiply_inertia, everything)
         self._take_solution = self._per_vertex(stage_kernels.take_solution, [body, stage, pieces, system])
         self._end_stage = self._per_vertex(stage_kernels.end_stage, [body, step, stage])
+
+
+def _factors(scheme: Scheme) -> list[list[StageFactors]]:
+    """The factors of each stage where nothing touches the body, and where something does."""
+    kinds = [map(make_stage_factors, stages, courses_of(stages)) for stages in scheme]
+    return [list(factors) for factors in zip(*kinds, strict=True)]

@@ -24,6 +24,7 @@ from ..arrays import (
     TARGET_REACHED,
     TARGET_VELOCITY,
     TIME_STEP,
+    TOUCHED,
     VELOCITY_KEPT,
     VELOCITY_REACHED,
     BodyArrays,
@@ -54,6 +55,7 @@ def begin_stages(
     velocities: wp.array[wp.vec3],
     gravity: wp.array[wp.vec3],
     forces: wp.array[wp.vec3],
+    touching: wp.array[int],
     body: BodyArrays,
     step: StepArrays,
     stage: StageArrays,
@@ -65,6 +67,7 @@ def begin_stages(
     row_mass = wp.float64(0.0)
     if i == 0:
         step.scales[TIME_STEP] = dt
+        step.scales[TOUCHED] = wp.float64(touching[0])
     if i < body.vertex_count[0]:
         if not (wp.isfinite(positions[i]) and wp.isfinite(velocities[i])):
             wp.atomic_max(record.reason, 0, BAD_START)
@@ -84,27 +87,36 @@ def begin_stages(
     step.predicted[i] = wp.vec3()
 
 
-@wp.kernel(enable_backward=False)
-def set_scales(factors: StageFactors, body: BodyArrays, step: StepArrays):
-    """The factors of a stage; see ``Stage``."""
-    dt = step.scales[TIME_STEP]
+@wp.func
+def scale_stage(factors: StageFactors, damping_time: wp.float64, scales: wp.array[wp.float64]):
+    """The factors of a stage for the present time step."""
+    dt = scales[TIME_STEP]
     scale = factors.scale * dt
-    damping = factors.damping_share * body.material[0][2]
-    step.scales[STAGE_TIME] = scale
-    step.scales[FORCE] = factors.force_share * scale * scale
-    step.scales[STIFFNESS] = factors.force_share * scale * scale
-    step.scales[DAMPING] = factors.force_share * scale
-    step.scales[ELASTIC_FORCE] = scale * scale
-    step.scales[ELASTIC_STIFFNESS] = scale * (scale + damping)
-    step.scales[DAMPING_SHARE] = damping / (scale + damping)
-    step.scales[START_SHARE] = factors.start_share
-    step.scales[TARGET_VELOCITY] = factors.target_velocity * dt
-    step.scales[TARGET_REACHED] = factors.target_reached
-    step.scales[VELOCITY_KEPT] = factors.velocity_kept
-    step.scales[VELOCITY_REACHED] = factors.velocity_reached / dt
-    step.scales[END_TIME] = factors.end_time * dt
-    step.scales[IMPULSE_SHARE] = factors.impulse_share * dt
-    step.scales[JOINED] = wp.float64(0.0)
+    damping = factors.damping_share * damping_time
+    scales[STAGE_TIME] = scale
+    scales[FORCE] = factors.force_share * scale * scale
+    scales[STIFFNESS] = factors.force_share * scale * scale
+    scales[DAMPING] = factors.force_share * scale
+    scales[ELASTIC_FORCE] = scale * scale
+    scales[ELASTIC_STIFFNESS] = scale * (scale + damping)
+    scales[DAMPING_SHARE] = damping / (scale + damping)
+    scales[START_SHARE] = factors.start_share
+    scales[TARGET_VELOCITY] = factors.target_velocity * dt
+    scales[TARGET_REACHED] = factors.target_reached
+    scales[VELOCITY_KEPT] = factors.velocity_kept
+    scales[VELOCITY_REACHED] = factors.velocity_reached / dt
+    scales[END_TIME] = factors.end_time * dt
+    scales[IMPULSE_SHARE] = factors.impulse_share * dt
+    scales[JOINED] = wp.float64(0.0)
+
+
+@wp.kernel(enable_backward=False)
+def set_scales(free: StageFactors, touched: StageFactors, body: BodyArrays, step: StepArrays):
+    """The factors of a stage, as something touches the body or nothing does; see ``Scheme``."""
+    if step.scales[TOUCHED] > wp.float64(0.0):
+        scale_stage(touched, body.material[0][2], step.scales)
+    else:
+        scale_stage(free, body.material[0][2], step.scales)
 
 
 @wp.kernel(enable_backward=False)

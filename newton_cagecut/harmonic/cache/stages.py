@@ -13,10 +13,11 @@ import warp as wp
 
 from ..faces.land import land_walks
 from ..options import WalkOptions
-from ..resolve.fitted import WalkedResiduals, resolve_fitted
+from ..resolve.fitted import resolve_fitted
 from ..resolve.fitted_rows import FittedRows
 from ..resolve.point_weights import PointWeights
 from ..resolve.resolve import resolve_points
+from ..resolve.walked_residuals import WalkedResiduals
 from ..stats import UpdateStats
 from ..walks.bounds import make_bounds
 from ..walks.landing import CAPPED
@@ -150,7 +151,7 @@ class Stages:
         with stats.time("resolve", state.device):
             landed = None
             if walks:
-                landed = WalkedResiduals(residuals, state.faces, self.records, walks, first_point)
+                landed = WalkedResiduals(residuals, state.faces, self.records, self.options, first_point)
             resolve_fitted(indices, self.weights, self.points, fit, state.grid, landed, self.rows)
             self._count_resolved(indices)
 

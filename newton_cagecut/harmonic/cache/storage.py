@@ -20,6 +20,7 @@ import warp as wp
 from ..._version import __version__
 from ...cage import Cage
 from ...geometry import is_number, shown
+from ..correction_choice import AUTO
 from ..options import WalkOptions
 from ..stats import UpdateStats
 from ..walks.query_points import INSIDE, REMOVED
@@ -90,7 +91,8 @@ def load_cache(
     _refuse(path, _cage_difference(arrays, cage))
     _refuse(path, _point_difference(arrays["rest"], points, arrays["point key"] == REMOVED))
     for name, value in options.items():
-        if not (isinstance(value, str) or is_number(value)) or kept[name] != value:
+        chosen = name == "correction" and isinstance(value, str) and value == AUTO  # whichever it was then
+        if not chosen and (not (isinstance(value, str) or is_number(value)) or kept[name] != value):
             _refuse(path, f"its {name} is {kept[name]!r}, not {shown(value)}")
     cache, domain = _filled_cache(header, arrays, cage, points, device)
     _check_repetition(path, header, arrays, cache, domain)

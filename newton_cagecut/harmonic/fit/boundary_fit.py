@@ -23,6 +23,8 @@ from .point_rows import PointRows
 from .residual_sums import NODES
 
 _PANEL_SIZE = 0.6
+_SLOPES_INWARD = 1e-6
+"""How far inside of a face its gradients are evaluated, in the unit frame."""
 
 
 class BoundaryFit:
@@ -185,10 +187,26 @@ class BoundaryFit:
         if self.cage.dimension == 3:
             return self._kept_residuals(len(corners))
         places = sum(hats[:, k, None] * corners[:, None, k] for k in range(2)).reshape(-1, 2)
-        owner = np.repeat(face, len(hats))
-        inside = places - INWARD * self.frame.half_side * self.outward(owner)
-        found = self.boundary(places, owner) - self.values(inside, self.cage.face_piece[owner])
-        return found.reshape(len(face), len(hats), -1)
+        return self.residuals_at(places, np.repeat(face, len(hats))).reshape(len(face), len(hats), -1)
+
+    def residuals_at(self, points: np.ndarray, face: np.ndarray) -> np.ndarray:
+        """What the fit leaves over at points of faces, put onto these, shape (point_count, cage.vertex_count).
+
+        Args:
+            points: Points on faces, but for rounding [m], shape (point_count, dimension).
+            face: The face of each, shape (point_count,).
+        """
+        unit, outward = self.frame.to_unit(points), self.outward(face)
+        if self.cage.dimension == 2:
+            start = self.frame.to_unit(self.cage.vertices)[np.asarray(self.cage.faces)[face, 0]]
+            unit -= ((unit - start) * outward).sum(axis=1, keepdims=True) * outward
+        else:
+            for number in np.unique(face).tolist():
+                own = face == number
+                unit[own] = self._planes.to_space(number, self._planes.to_plane(number, unit[own]))
+                outward[own] = self._planes.outward[number]
+        inside = (unit - INWARD * outward) * self.frame.half_side + self.frame.center
+        return self.boundary(points, face) - self.values(inside, self.cage.face_piece[face])
 
     def _kept_residuals(self, cell_count: int) -> np.ndarray:
         """Residuals in space, from layers that the memory keeps."""
@@ -225,10 +243,14 @@ class BoundaryFit:
             rows: Gradients of layers at the points that are kept, if any.
         """
         if face is not None:
-            inward = np.where(face >= 0, -INWARD * self.frame.half_side, 0.0)
+            inward = np.where(face >= 0, -_SLOPES_INWARD * self.frame.half_side, 0.0)
             points = points + inward[:, None] * self.outward(face)
-        slopes = self.gradients(points, piece, rows) * self.frame.half_side
-        return make_slopes_exact(self._affine, piece, slopes) / self.frame.half_side
+        return self.exact_slopes(piece, self.gradients(points, piece, rows))
+
+    def exact_slopes(self, piece: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+        """Gradients [1/m] made exact: see ``slopes``. Those of points of piece -1 stay as they are."""
+        side = self.frame.half_side
+        return make_slopes_exact(self._affine, piece, slopes * side) / side
 
     def _on_faces(self, faces: list[int], unit: list[np.ndarray]) -> list[np.ndarray]:
         """Boundary functions of faces at points of theirs, shape (point_count, corner_count) each."""
@@ -267,6 +289,6 @@ class BoundaryFit:
             if rows is not None:
                 out[np.ix_(own, columns)] = rows.evaluated(fit, own)
             elif self.cage.dimension == 2:
-                out[np.ix_(own, columns)] = fit.gradients(unit[own]) if slopes else fit.values(unit[own])
+                out[np.ix_(own, columns)] = fit.gradients(unit[own]) if slopes else fit.inside(unit[own])
             else:
                 out[np.ix_(own, columns)] = fit.at(unit[own], self.batch, slopes=slopes)

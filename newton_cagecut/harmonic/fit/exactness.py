@@ -124,7 +124,7 @@ def make_slopes_exact(frames: AffineFrames, piece: np.ndarray, slopes: np.ndarra
 
     Args:
         frames: The affine functions.
-        piece: Piece whose vertices are corrected, shape (point_count,).
+        piece: Piece whose vertices are corrected, -1 to leave a point as it is, shape (point_count,).
         slopes: Gradients in the frame, shape (point_count, vertex_count, dimension).
     """
     device, (count, vertices, dimension) = frames.affine.device, slopes.shape

@@ -21,8 +21,11 @@ from .layers.spans import in_spans
 from .panels.face_panels import PanelParts
 from .residual_sums import NODES
 
-INWARD = 1e-6
-"""How far inside of a face the fit is evaluated on it, in the unit frame: there it is finite and of its side."""
+INWARD = 1e-9
+"""How far inside of a face its residual is evaluated, in the unit frame: there the fit is finite and of its side.
+
+Farther off, residuals at the end of a slit would not be those on it, and what walks make of them would be biased.
+"""
 
 
 @dataclass(frozen=True, eq=False)

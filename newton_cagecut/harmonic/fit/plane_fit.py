@@ -130,8 +130,11 @@ class PlaneFit:
 
         On a slit a point counts for the edge that comes first.
         """
-        points = self.outline.to_frame(points)
-        return self.outline.put_on_edges(points, self._fit.at(points, self._batch))
+        return self.outline.put_on_edges(self.outline.to_frame(points), self.inside(points))
+
+    def inside(self, points: np.ndarray) -> np.ndarray:
+        """Coordinates of points inside, however near to an edge, shape (point_count, column_count)."""
+        return self._fit.at(self.outline.to_frame(points), self._batch)
 
     def gradients(self, points: np.ndarray) -> np.ndarray:
         """Their gradients, shape (point_count, column_count, 2)."""

@@ -5,23 +5,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import warp as wp
 
-from ..faces.face_tables import FaceTables
 from ..fit.boundary_fit import BoundaryFit
 from ..fit.face_lookup import nearest_faces
-from ..fit.layers.products import LANE
-from ..fit.residual_sums import ResidualTable, make_residual_kernel
 from ..launch import launch
 from ..walks.query_points import QueryPoints
-from ..walks.records import WalkRecords
 from ..walls.grid import CandidateGrid
 from ..walls.nearest_wall import measure_distance
 from .fitted_rows import FittedRows
 from .point_weights import PointWeights
+from .walked_residuals import WalkedResiduals
 
 _NEAR = 1e-5
 """Distance from the walls in the unit frame below which it is measured again, in float64."""
@@ -30,35 +25,6 @@ _ON_FACE = 3e-7
 _BATCH = 1 << 13
 
 wp.set_module_options({"enable_backward": False})
-
-
-@dataclass(frozen=True, eq=False)
-class WalkedResiduals:
-    """What corrects a fit: its residuals, and where walks have landed.
-
-    Args:
-        table: Residuals on the faces.
-        faces: The faces.
-        records: Landings of the walks, of which the faces are known.
-        walks: Walks a point.
-        first_point: The point whose walks are the first of the records.
-    """
-
-    table: ResidualTable
-    faces: FaceTables
-    records: WalkRecords
-    walks: int
-    first_point: int
-
-    def sums(self, indices: np.ndarray, vertex_count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Sums of the residuals at the landings of points, and of their squares, shape (n, vertex_count) each."""
-        device, lanes = self.records.device, self.table.terms.shape[1]
-        rows = wp.array(indices.astype(np.int32), dtype=wp.int32, device=device)
-        sums, squares = (wp.zeros((len(indices), lanes), dtype=LANE, device=device) for _ in range(2))
-        inputs = [rows, self.walks, self.first_point, self.faces, self.records.landings, self.table, sums, squares]
-        kernel = make_residual_kernel(self.records.dimension)
-        launch(kernel, len(indices), inputs, device=device, smallest_chunk=16)
-        return tuple(found.numpy().reshape(len(indices), -1)[:, :vertex_count] for found in (sums, squares))
 
 
 @wp.kernel(enable_backward=False)
@@ -108,7 +74,8 @@ def resolve_fitted(
 ) -> None:
     """Read the weights of points, and the gradients of those that have them, from a fit.
 
-    Walks correct the weights by the mean of what the fit leaves over where they have landed.
+    Walks correct the weights by the mean of what the fit leaves over where they have landed, and the gradients inside
+    as far as what they say of these stands out of its noise.
 
     Args:
         indices: The points, shape (n,).
@@ -144,7 +111,11 @@ def resolve_fitted(
         some = sloped[first : first + _BATCH]
         slopes = np.zeros((len(some), fit.cage.vertex_count, 3), dtype=np.float32)
         kept = rows.slopes and rows.slopes.choose(gradient_row[some])
-        slopes[..., : fit.cage.dimension] = fit.slopes(rest[some], piece[some], face[some], rows=kept)
+        found = fit.slopes(rest[some], piece[some], face[some], rows=kept)
+        if landed is not None:
+            inside = np.where(face[some] < 0, piece[some], -1)
+            found = fit.exact_slopes(inside, landed.corrected_slopes(indices[some], inside, found, points, frame))
+        slopes[..., : fit.cage.dimension] = found
         at = wp.array(gradient_row[some].astype(np.int32), dtype=wp.int32, device=device)
         inputs = [at, wp.array(slopes, dtype=wp.vec3, device=device), weights.gradients]
         launch(_write_gradients, len(some), inputs, device=device)

@@ -26,12 +26,14 @@ class Outcome:
         momentum_drift: Change of a free body's linear momentum, beyond gravity's, over mass times the speed that its
             starting energy is worth.
         iterations: Most iterations of a linear solve.
-        limited_steps: Steps that changed F by the most that the solver lets a step change it.
+        missed_steps: Steps in which a linear solve ended short of the tolerance, as the solver counts them.
+        limited_steps: Steps whose solution was not taken whole, as the solver counts them.
         step_count: Steps that were made.
         error: Error against the answer that ``against`` names, relative.
         against: The answer that the error is against.
         milliseconds: Mean time of a step [ms].
         note: Anything to add, such as the value behind the error.
+        raised: Whether the measurement itself broke; the note says how.
     """
 
     finite: bool | None = None
@@ -39,12 +41,14 @@ class Outcome:
     recovers: bool | None = None
     momentum_drift: float | None = None
     iterations: int | None = None
+    missed_steps: int | None = None
     limited_steps: int | None = None
     step_count: int = 0
     error: float | None = None
     against: str = ""
     milliseconds: float | None = None
     note: str = ""
+    raised: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,14 +59,14 @@ class Limits:
         energy_gain: Highest gain.
         recovers: Whether the body must come back to its shape.
         momentum_drift: Highest drift.
-        iterations: Most iterations: fewer than those at which a solve gives up.
+        missed_steps: Most steps whose solves may end short of the tolerance.
         error: Highest error.
     """
 
     energy_gain: float | None = None
     recovers: bool = False
     momentum_drift: float | None = None
-    iterations: int | None = 149
+    missed_steps: int | None = 0
     error: float | None = None
 
     def failures(self, outcome: Outcome) -> list[str]:
@@ -74,8 +78,8 @@ class Limits:
             limit, value = getattr(self, name), getattr(outcome, name)
             if limit is not None and not (value is not None and math.isfinite(value) and value <= limit):
                 found.append(name)
-        if self.iterations is not None and outcome.iterations is not None and outcome.iterations > self.iterations:
-            found.append("iterations")
+        if self.missed_steps is not None and (outcome.missed_steps or 0) > self.missed_steps:
+            found.append("missed_steps")
         return found
 
 

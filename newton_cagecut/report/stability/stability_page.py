@@ -6,14 +6,15 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from ..page.markdown import markdown_lines, table_lines
+from .equal_error import equal_error
+from .kept import jsonable
 from .outcome import Limits, Result
-from .sweep import Cell, Map, map_name
+from .sweep import Cell, Map, cell_name, map_name
 from .text import number, share, step_text
 
 FORMAT = 1
@@ -27,6 +28,7 @@ _HEAD = (
     "recovers",
     "momentum drift",
     "iterations",
+    "missed",
     "limited",
     "error",
     "ms a step",
@@ -35,9 +37,9 @@ _HEAD = (
 _EXPLANATION = """\
 Energy gain: the highest total energy above that of the start, over the start's; the work of gravity is no gain.
 Momentum drift: the change of a free body's linear momentum, over mass times the speed that its energy is worth.
-Iterations: the most of one linear solve, which ends at 150 whether it has converged or not. Limited: steps that
-changed the deformation gradient somewhere by 1, the most that a step may. A figure out of its limit is bold, with the
-limit behind it.
+Iterations: the most of one linear solve. Missed: steps in which one ended short of the tolerance. Limited: steps whose
+solution was not taken whole, since the energy would have risen. A figure out of its limit is bold, with the limit
+behind it.
 """
 
 
@@ -78,6 +80,8 @@ class Page:
         for group, results in _grouped(self.results):
             body = [_cells(result, bold=False) for result in results]
             lines += [group, *table_lines(_HEAD, body), ""]
+        for title, head, body in equal_error(self.results):
+            lines += [title, *table_lines(head, body), ""]
         for found in self.maps:
             lines += [_verdict(found), ""]
             for title, body in _map_tables(found):
@@ -90,6 +94,8 @@ class Page:
         lines = ["# Stability", "", f"{self.summary()}. {device}.", "", _EXPLANATION]
         for group, results in _grouped(self.results):
             lines += [f"## {group}", "", *markdown_lines(_HEAD, [_cells(result, bold=True) for result in results]), ""]
+        for title, head, body in equal_error(self.results):
+            lines += [f"### {title}", "", *markdown_lines(head, body), ""]
         lines += [
             "## Map",
             "",
@@ -117,16 +123,13 @@ class Page:
             records[result.row.name] = self._record(result.row.name, parameters, values)
         for found in self.maps:
             for cell in found.cells.values():
-                name = map_name(found.model)
                 parameters = {"model": found.model, "young": cell.young, "dt": cell.dt}
-                records[f"{name}, {cell.young:g} Pa, {cell.dt:g} s"] = self._record(
-                    name, parameters, asdict(cell.outcome)
-                )
+                name = cell_name(found.model, cell.young, cell.dt)
+                records[name] = self._record(map_name(found.model), parameters, asdict(cell.outcome))
         return {"format": FORMAT, "settings": self.settings, "machine": self.machine, "records": records}
 
     def _record(self, row: str, parameters: dict, values: dict) -> dict:
-        finite = {key: str(v) if isinstance(v, float) and not math.isfinite(v) else v for key, v in values.items()}
-        return {"row": row, "scene": self.settings["scene"], "parameters": parameters, "values": finite}
+        return {"row": row, "scene": self.settings["scene"], "parameters": parameters, "values": jsonable(values)}
 
 
 def _grouped(results: Sequence[Result]) -> list[tuple[str, list[Result]]]:
@@ -138,13 +141,14 @@ def _grouped(results: Sequence[Result]) -> list[tuple[str, list[Result]]]:
 
 def _cells(result: Result, *, bold: bool) -> list[str]:
     """The cells of a row; those out of their limits stand out."""
-    outcome, limits = result.outcome, result.row.limits or Limits(iterations=None)
+    outcome, limits = result.outcome, result.row.limits or Limits(missed_steps=None)
     texts = {
         "finite": _yes(outcome.finite),
         "energy_gain": share(outcome.energy_gain),
         "recovers": _yes(outcome.recovers),
         "momentum_drift": number(outcome.momentum_drift),
         "iterations": _count(outcome.iterations),
+        "missed_steps": _count(outcome.missed_steps),
         "limited": f"{_count(outcome.limited_steps)} of {outcome.step_count}",
         "error": share(outcome.error),
         "milliseconds": number(outcome.milliseconds),

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...elastic import Material
+from .kept import KeptOutcomes
 from .limits import limits_of
 from .outcome import Outcome
 from .rows.starts import MODELS
@@ -71,19 +72,23 @@ def axes(*, quick: bool) -> tuple[tuple[float, ...], tuple[float, ...]]:
     return (_YOUNG[::2], _TIME_STEPS[0::2]) if quick else (_YOUNG, _TIME_STEPS)
 
 
-def sweep(bench: Workbench, model: str, advance: Callable[[], None]) -> Map:
+def sweep(bench: Workbench, model: str, kept: KeptOutcomes, advance: Callable[[], None]) -> Map:
     """Make the map of one material.
 
     Args:
         bench: Where the body comes from.
         model: The material's model, one of ``MODELS``.
+        kept: What is measured already.
         advance: Called after each cell.
     """
     young, time_steps = axes(quick=bench.quick)
     cells = {}
     for stiffness in young:
         for dt in time_steps:
-            cells[stiffness, dt] = _cell(bench, model, stiffness, dt)
+            outcome, _ = kept.outcome(
+                cell_name(model, stiffness, dt), lambda young=stiffness, dt=dt: (_cell(bench, model, young, dt), 0.0)
+            )
+            cells[stiffness, dt] = Cell(young=stiffness, dt=dt, outcome=outcome)
             advance()
     return Map(model=model, young=young, time_steps=time_steps, cells=cells)
 
@@ -93,7 +98,12 @@ def map_name(model: str) -> str:
     return f"map, {MODELS[model]}"
 
 
-def _cell(bench: Workbench, model: str, young: float, dt: float) -> Cell:
+def cell_name(model: str, young: float, dt: float) -> str:
+    """The name of a place of a map."""
+    return f"{map_name(model)}, {young:g} Pa, {dt:g} s"
+
+
+def _cell(bench: Workbench, model: str, young: float, dt: float) -> Outcome:
     """200 steps or a second of a body that turns once a second and trembles."""
     trial = bench.subject(Material(young=young, model=model))
     arms = trial.positions - trial.center()
@@ -108,4 +118,4 @@ def _cell(bench: Workbench, model: str, young: float, dt: float) -> Cell:
     lost = None
     if free:
         lost = 1.0 - float(trial.angular_momentum() @ start / (start @ start)) if trial.finite else math.nan
-    return Cell(young=young, dt=dt, outcome=trial.outcome(free=free, error=lost, against="angular momentum"))
+    return trial.outcome(free=free, error=lost, against="angular momentum")

@@ -9,7 +9,7 @@ import time
 
 from .limits import limits_of
 from .outcome import Outcome, Result, Row
-from .rows import cuts, loads, motion, starts, statics, tetrahedra
+from .rows import against_time, cuts, loads, motion, starts, statics, tetrahedra
 from .workbench import Workbench
 
 _GROUPS = {
@@ -19,6 +19,7 @@ _GROUPS = {
     "Cuts": cuts.ROWS,
     "Small deformations": statics.ROWS,
     "The same bodies as tetrahedra": tetrahedra.ROWS,
+    "Error against time a step": against_time.ROWS,
 }
 _OF_ANY_SCENE = ("Impossible starts",)
 
@@ -38,17 +39,31 @@ def rows(*, quick: bool, scene: bool) -> list[Row]:
     ]
 
 
-def measure(row: Row, bench: Workbench) -> Result:
-    """Measure a row; what it raises is its failure.
+def measure(row: Row, bench: Workbench) -> tuple[Outcome, float]:
+    """Measure a row; what it raises is its note, and :func:`judged` its failure.
 
     Args:
         row: The row.
         bench: Where the bodies come from.
+
+    Returns:
+        What came out, and the seconds that it took.
     """
     start = time.perf_counter()
     try:
         outcome = row.run(bench)
-        failures = row.limits.failures(outcome) if row.limits is not None else []
     except Exception as error:  # a row that breaks must not take the others with it
-        outcome, failures = Outcome(note=f"{type(error).__name__}: {' '.join(str(error).split())}"), ["raised"]
-    return Result(row=row, outcome=outcome, failures=tuple(failures), seconds=time.perf_counter() - start)
+        outcome = Outcome(raised=True, note=f"{type(error).__name__}: {' '.join(str(error).split())}")
+    return outcome, time.perf_counter() - start
+
+
+def judged(row: Row, outcome: Outcome, seconds: float) -> Result:
+    """A row's outcome, held against its limits.
+
+    Args:
+        row: The row.
+        outcome: What came out.
+        seconds: How long it took [s].
+    """
+    failures = ["raised"] if outcome.raised else row.limits.failures(outcome) if row.limits is not None else []
+    return Result(row=row, outcome=outcome, failures=tuple(failures), seconds=seconds)

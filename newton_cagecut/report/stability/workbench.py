@@ -11,14 +11,17 @@ from dataclasses import replace
 import newton
 import numpy as np
 
+from ...cage import Cage
 from ...elastic import Material
 from ...solver import SolverCageCut, add_cage_body
-from .shapes import bar_cage, surface_in
+from .shapes import Blocks, bar, bracket, surface_in
 from .trial import Trial
 
 WALKS, QUADRATURE = 64, 60
 BAR = (1.0, 0.2, 0.2)
 CUBE = (0.4, 0.4, 0.4)
+BRACKET = (0.6, 0.2)
+"""Length of a leg, and its width and height [m]."""
 _CONTACT = 1.0e6
 """Stiffness of the ground under a point [N/m]."""
 
@@ -50,7 +53,7 @@ class Workbench:
         key: str = "",
         **options: object,
     ) -> Trial:
-        """A bar at rest, or as it was added; those that cannot be cut are built once and used again.
+        """A bar at rest, or as it was added; bodies that cannot be cut are built once and used again.
 
         Args:
             material: Its material.
@@ -65,42 +68,92 @@ class Workbench:
             key: Tells bars apart that differ in ``fixed`` or ``options`` only.
             options: Further options of ``add_cage_body``.
         """
-        which = (material.model, segments, size, tuple(gravity), ground, walks, quadrature, key)
-        trial = None if cuttable else self._trials.get(which)
-        if trial is None:
-            cage = bar_cage(segments, size)
-            builder = newton.ModelBuilder(gravity=tuple(map(float, gravity)))
-            SolverCageCut.register_custom_attributes(builder)
-            if ground:
-                builder.add_ground_plane(cfg=newton.ModelBuilder.ShapeConfig(ke=_CONTACT, mu=0.5))
-                options.setdefault("contact_radius", 0.01)
-            held = None if fixed is None else fixed(cage.vertices)
-            fields = {"material": material, "walks": walks, "quadrature": quadrature, "cuttable": cuttable}
-            add_cage_body(builder, cage, surface_in(cage), fixed=held, **fields, **options)
-            trial = Trial(builder, collide=ground)
-            trial.model.soft_contact_ke = _CONTACT
-            if not cuttable:
-                self._trials[which] = trial
-        trial.set_material(material)
-        trial.reset()
-        return trial
+        which = (segments, size, tuple(gravity), ground, walks, quadrature, key)
+        options |= {"gravity": gravity, "fixed": fixed, "ground": ground, "walks": walks, "quadrature": quadrature}
+
+        def build() -> Trial:
+            cage = bar(segments, size).cage()
+            return _trial(cage, surface_in(cage), material, cuttable=cuttable, **options)
+
+        return self._again(material, None if cuttable else which, build)
+
+    def bracket(
+        self,
+        material: Material,
+        segments: int,
+        *,
+        fixed: Callable[[np.ndarray], np.ndarray],
+        walks: int,
+        quadrature: int,
+    ) -> Trial:
+        """An L at rest, its legs as in ``BRACKET``.
+
+        Args:
+            material: Its material.
+            segments: Segments of each leg.
+            fixed: Tells which vertices, given as (n, 3) [m], are fixed.
+            walks: Walks a point.
+            quadrature: Quadrature points.
+        """
+
+        def build() -> Trial:
+            blocks = bracket(segments, *BRACKET)
+            leg = Blocks((blocks.axes[0][[0, -2]], blocks.axes[1], blocks.axes[2][:2]), np.ones((1, 1, 1), dtype=bool))
+            options = {"fixed": fixed, "walks": walks, "quadrature": quadrature, "cuttable": False}
+            return _trial(blocks.cage(), surface_in(leg.cage()), material, **options)
+
+        return self._again(material, ("bracket", segments, walks, quadrature), build)
 
     def subject(self, material: Material) -> Trial:
         """The bodies of the scene, or a bar, as they were built, of a material."""
         if self.scene is None:
             return self.bar(material)
-        trial = self._trials.get(material.model)
-        if trial is None:
+
+        def build() -> Trial:
             builder = newton.ModelBuilder()
             SolverCageCut.register_custom_attributes(builder)
             self.scene(builder)
             rows = builder.custom_attributes["cagecut:definition"].values
             for index, definition in list(_items(rows)):
                 rows[index] = replace(definition, material=material)
-            trial = self._trials[material.model] = Trial(builder)
+            return Trial(builder)
+
+        return self._again(material, "scene", build)
+
+    def _again(self, material: Material, key: object | None, build: Callable[[], Trial]) -> Trial:
+        """The trial of a key and the material's model, built if it is not there, or always without a key."""
+        which = None if key is None else (key, material.model)
+        trial = self._trials.get(which) if which is not None else None
+        if trial is None:
+            trial = build()
+            if which is not None:
+                self._trials[which] = trial
         trial.set_material(material)
         trial.reset()
         return trial
+
+
+def _trial(
+    cage: Cage,
+    surface: tuple[np.ndarray, np.ndarray],
+    material: Material,
+    *,
+    gravity: Sequence[float] = (0.0, 0.0, 0.0),
+    fixed: Callable[[np.ndarray], np.ndarray] | None = None,
+    ground: bool = False,
+    **options: object,
+) -> Trial:
+    """A body alone, or above a plane that its surface touches."""
+    builder = newton.ModelBuilder(gravity=tuple(map(float, gravity)))
+    SolverCageCut.register_custom_attributes(builder)
+    if ground:
+        builder.add_ground_plane(cfg=newton.ModelBuilder.ShapeConfig(ke=_CONTACT, mu=0.5))
+        options.setdefault("contact_radius", 0.01)
+    held = None if fixed is None else fixed(cage.vertices)
+    add_cage_body(builder, cage, surface, fixed=held, material=material, **options)
+    trial = Trial(builder, collide=ground)
+    trial.model.soft_contact_ke = _CONTACT
+    return trial
 
 
 def _items(rows: object) -> list[tuple[int, object]]:

@@ -27,7 +27,7 @@ _PLANES = 48
 _SHARE = 0.75
 """Share of planes that cross no more edges than a cut is taken to."""
 _CROSSED_VERTICES = 0.8
-_CROSSED_POINTS = 0.25
+_CROSSED_POINTS = 0.3
 """What each earlier cut adds to the next one's, of what that takes alone, if all go through one another (measured)."""
 _SPARE = 16
 _MORE = 0.5

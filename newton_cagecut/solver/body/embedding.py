@@ -96,7 +96,7 @@ def copy_sites(point_site: wp.array[wp.int32], sites: wp.array[wp.vec3], points:
 
 
 class SeamPoints:
-    """Positions of all points of a surface with seams, from those of its sites."""
+    """Positions of all points of a surface with seams or sheets that touch, from those of its sites."""
 
     def __init__(self) -> None:
         self._surface: Surface | None = None
@@ -105,12 +105,12 @@ class SeamPoints:
         """Positions of a surface's points, an array that the next call overwrites, shape (point_count,) [m].
 
         Args:
-            surface: The surface, with seams.
+            surface: The surface, with seams or sheets that touch.
             sites: Positions of its sites, shape (site_count,) [m].
         """
         if surface is not self._surface:
             self._surface = surface
-            self._point_site = wp.array(surface.point_site.astype(np.int32), dtype=wp.int32, device=sites.device)
+            self._point_site = wp.array(surface.point_place.astype(np.int32), dtype=wp.int32, device=sites.device)
             self._points = wp.empty(surface.point_count, dtype=wp.vec3, device=sites.device)
         inputs = [self._point_site, sites, self._points]
         wp.launch(copy_sites, dim=surface.point_count, inputs=inputs, device=sites.device)

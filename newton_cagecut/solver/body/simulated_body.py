@@ -221,14 +221,14 @@ class SimulatedBody:
             points = self._surface_buffer
         self._embed(state.particle_q[self.vertices], points)
         sites = points[: self.surface.site_count]
-        return sites if self.surface.point_site is None else self._seams.points_of(self.surface, sites)
+        return sites if self.surface.point_place is None else self._seams.points_of(self.surface, sites)
 
     def surface_velocities(self, state: newton.State) -> np.ndarray:
         """Velocities of the surface's points [m/s], shape (point_count, 3), on the host."""
         self.require_current(state)
         sites = wp.empty(self.capacity.surface_points, dtype=wp.vec3, device=self.device)
         self._embed(state.particle_qd[self.vertices], sites)
-        velocities, site = sites.numpy()[: self.surface.site_count], self.surface.point_site
+        velocities, site = sites.numpy()[: self.surface.site_count], self.surface.point_place
         return velocities if site is None else velocities[site]
 
     def surface_triangles(self) -> wp.array:

@@ -248,6 +248,9 @@ def fill_contacts(
     give = dt * inverse_mass(touch, model, state, response)
     kd = 0.5 * (material[1] + model.shape_kd[shape])
     shrink = 1.0 / (1.0 + give * (dt * k + kd))
+    if model.firmness > 0.0:  # what closes the gap by the end of the step, not before
+        kd += dt * k
+        k = 0.0
     along = wp.outer(normal, normal)
     across = wp.identity(3, dtype=float) - along
     slots.rigid[slot] = touch.rigid

@@ -3,14 +3,14 @@
 
 """Contact of a body's surface with Newton's shapes: implicit penalty forces, pulled back to the cage.
 
-Newton's pipeline finds soft contacts of the surface particles. Each pushes with the mean stiffness of body and shape, as
-in Newton's other solvers, and drags with Coulomb friction of the push at the start of the step; force and stiffness
+Newton's pipeline finds soft contacts of the surface particles. Each pushes with the mean stiffness of body and shape,
+as in Newton's other solvers, and drags with Coulomb friction of the push at the start of the step; force and stiffness
 reach the cage through the weights, w^T f and w^T S w, so the step stays one symmetric positive definite solve.
 
-Firm contacts act already if their gap is closed by the end of the step, and are as much stiffer as stops a point's share
-of the body's mass within its radius. What is deeper than that meets what bears its share of Young's modulus too, and is
-pushed out at 1 m/s at most. Points that slide too fast to be stopped in the step are rubbed with a known force; others
-as by a viscous one, which holds them.
+Firm contacts act already if their gap is closed by the end of the step, and are as much stiffer as stops a point's
+share of the body's mass within its radius. What is deeper than that meets what bears its share of Young's modulus too,
+and is pushed out at 1 m/s at most. Points that slide too fast to be stopped in the step are rubbed with a known force;
+others as by a viscous one, which holds them.
 
 A rigid body gives way: each of its n contacts is in series with an n-th of its inertia. What the contacts gave to the
 cage in the step, with the sign turned, goes to ``body_f``, so the pair keeps its momentum.

@@ -13,7 +13,7 @@ import numpy as np
 
 from ....elastic import Material
 from ....section import Blade
-from ..answers import flip_time, swing
+from ..answers.book_answers import flip_time, swing
 from ..outcome import Outcome
 from ..trial import Trial
 from ..workbench import CUBE, Workbench

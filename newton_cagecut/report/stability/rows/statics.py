@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""Rows on small deformations, against beams and finite elements: deflections, frequencies, an edge crack."""
+"""Rows on small deformations, against beams and finite elements: deflections, torsion, frequencies, an edge crack."""
 
 from __future__ import annotations
 
@@ -13,30 +13,56 @@ import numpy as np
 
 from ....elastic import Material
 from ....section import Blade
-from ..answers import bending_mode, tip_deflection
+from ..answers.book_answers import bending_mode, tip_deflection
+from ..answers.solid_answers import ELEMENTS, bar_deflection, bracket_deflection, crack_opening, torsion_energy
 from ..outcome import Outcome
 from ..trial import Trial
-from ..workbench import BAR, Workbench
+from ..workbench import BAR, BRACKET, Workbench
 
 YOUNG, DENSITY = 1.0e6, 1000.0
+_FLAT_BAR = (1.0, 0.1, 0.3)
 _SLOW = 10.0
 """A time step so long that inertia says nothing [s]."""
 
-CRACK_OPENING = 0.78
-"""Opening of an edge crack through half of the bar over the ends' displacement, by quadratic finite elements."""
+_TURN = 1.0e-3
+"""Angle between the ends of a bar under torsion [rad]."""
 
 
-def cantilever(
-    bench: Workbench, poisson: float, segments: int, *, size: tuple[float, float, float] = BAR, axis: int = 2
-) -> Outcome:
+def cantilever(bench: Workbench, poisson: float, segments: int) -> Outcome:
     """The tip of a clamped bar under a small force across it."""
-    material = Material(young=YOUNG, poisson=poisson)
-    trial = bench.bar(material, segments=segments, size=size, fixed=_clamped, key="clamped", **_fine(segments))
-    force = 0.01 * YOUNG * size[1] * size[2] * (min(size[1:]) / size[0]) ** 2
-    deflection = _pushed(trial, axis, force)
-    section = (size[0], size[1], size[2]) if axis == 2 else (size[0], size[2], size[1])
-    expected = tip_deflection(force, size=section, young=YOUNG, poisson=poisson)
+    force, deflection, trial = _bent(bench, poisson, segments, BAR, 2)
+    expected = tip_deflection(force, size=BAR, young=YOUNG, poisson=poisson)
     return _against(trial, deflection, expected, "Timoshenko")
+
+
+def flat_cantilever(bench: Workbench, poisson: float, segments: int, axis: int) -> Outcome:
+    """The same with a flat bar, along its thin side or its wide one."""
+    force, deflection, trial = _bent(bench, poisson, segments, _FLAT_BAR, axis)
+    return _against(trial, deflection, force / YOUNG * bar_deflection(_FLAT_BAR, poisson, axis), ELEMENTS)
+
+
+def torsion(bench: Workbench, poisson: float, segments: int) -> Outcome:
+    """A bar between held ends that are turned against each other: the moment, by the elastic energy."""
+    material = Material(young=YOUNG, poisson=poisson)
+    trial = bench.bar(material, segments=segments, fixed=_ends, key="ends", **_fine(segments))
+    turned = trial.rest.copy()
+    end = turned[:, 0] > BAR[0] - 1.0e-6
+    turned[end, 1:] += _TURN * np.stack([-turned[end, 2], turned[end, 1]], axis=1)
+    trial.place(turned, np.zeros_like(turned))
+    trial.run(20, _SLOW)
+    expected = YOUNG * torsion_energy(BAR, poisson, _TURN)
+    # The energy is that of a moment; a body that is too stiff has too much of it, and would turn too little.
+    return _against(trial, expected, trial.energy()[0], f"{ELEMENTS}, turn under a moment")
+
+
+def bracket(bench: Workbench, poisson: float, segments: int, axis: int) -> Outcome:
+    """An L, clamped at one end, under a small force at the other."""
+    material = Material(young=YOUNG, poisson=poisson)
+    trial = bench.bracket(material, segments, fixed=_clamped, **_fine(2 * segments))
+    tip = trial.rest[:, 2] > sum(BRACKET) - 1.0e-6
+    force = 1.0e-4 * YOUNG * BRACKET[1] ** 2
+    expected = force / YOUNG * bracket_deflection(*BRACKET, poisson, axis)
+    return _against(trial, _pushed(trial, tip, axis, force), expected, ELEMENTS)
 
 
 def frequency(bench: Workbench, bending: bool, segments: int) -> Outcome:
@@ -74,7 +100,7 @@ def edge_crack(bench: Workbench, segments: int) -> Outcome:
     trial.run(20, _SLOW)
     mouth = (np.abs(rest[:, 0] - 0.5) < 1.0e-5) & (rest[:, 2] > 0.5 * BAR[2] - 1.0e-6)
     opening = float(np.ptp((trial.positions - rest)[mouth, 0])) / pull
-    return _against(trial, opening, CRACK_OPENING, "quadratic finite elements")
+    return _against(trial, opening, crack_opening(BAR, 0.3), ELEMENTS)
 
 
 def _fine(segments: int) -> dict[str, int]:
@@ -82,12 +108,22 @@ def _fine(segments: int) -> dict[str, int]:
     return {"walks": 256, "quadrature": max(300, 40 * segments)}
 
 
-def _pushed(trial: Trial, axis: int, force: float) -> float:
-    """How far the tip goes when a force acts on its vertices [m]."""
+def _bent(
+    bench: Workbench, poisson: float, segments: int, size: tuple[float, float, float], axis: int
+) -> tuple[float, float, Trial]:
+    """A clamped bar under a force at its tip: the force [N], how far the tip goes [m], and the bar."""
+    material = Material(young=YOUNG, poisson=poisson)
+    trial = bench.bar(material, segments=segments, size=size, fixed=_clamped, key="clamped", **_fine(segments))
+    force = 0.01 * YOUNG * size[1] * size[2] * (min(size[1:]) / size[0]) ** 2
+    return force, _pushed(trial, trial.rest[:, 0] > size[0] - 1.0e-6, axis, force), trial
+
+
+def _pushed(trial: Trial, tip: np.ndarray, axis: int, force: float) -> float:
+    """How far some vertices go when a force acts on them [m]."""
     forces = np.zeros_like(trial.rest)
-    forces[-4:, axis] = 0.25 * force
+    forces[tip, axis] = force / tip.sum()
     trial.run(10, _SLOW, force=forces)
-    return float((trial.positions - trial.rest)[-4:, axis].mean())
+    return float((trial.positions - trial.rest)[tip, axis].mean())
 
 
 def _against(trial: Trial, found: float, expected: float, against: str, *, free: bool = False) -> Outcome:
@@ -110,8 +146,6 @@ def _ends(vertices: np.ndarray) -> np.ndarray:
     return np.flatnonzero((vertices[:, 0] < 1.0e-6) | (vertices[:, 0] > 1.0 - 1.0e-6))
 
 
-_FLAT_BAR = (1.0, 0.1, 0.3)
-
 ROWS: tuple[tuple[str, Callable[[Workbench], Outcome], bool], ...] = (
     *(
         (f"cantilever, 8 segments, Poisson {poisson}", partial(cantilever, poisson=poisson, segments=8), True)
@@ -123,11 +157,27 @@ ROWS: tuple[tuple[str, Callable[[Workbench], Outcome], bool], ...] = (
     ),
     *(
         (
-            f"cantilever 1 x 0.1 x 0.3, bent along {'yz'[axis - 1]}",
-            partial(cantilever, poisson=0.3, segments=8, size=_FLAT_BAR, axis=axis),
+            f"cantilever 1 x 0.1 x 0.3 along {'yz'[axis - 1]}, 8 segments, Poisson {poisson}",
+            partial(flat_cantilever, poisson=poisson, segments=8, axis=axis),
             False,
         )
         for axis in (1, 2)
+        for poisson in (0.3, 0.499)
+    ),
+    *(
+        (f"torsion, {n} segments, Poisson {poisson}", partial(torsion, poisson=poisson, segments=n), n == 8)
+        for n in (8, 16)
+        for poisson in (0.3, 0.499)
+    ),
+    *(
+        (
+            f"bracket along {'xyz'[axis]}, {n} segments a leg, Poisson {poisson}",
+            partial(bracket, poisson=poisson, segments=n, axis=axis),
+            False,
+        )
+        for n in (4, 8)
+        for axis in (0, 1)
+        for poisson in (0.3, 0.499)
     ),
     *(
         (f"{name} frequency, {n} segments", partial(frequency, bending=name == "bending", segments=n), n == 4)

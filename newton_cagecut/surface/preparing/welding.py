@@ -14,7 +14,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ..geometry import PolygonMesh
+from ...geometry import PolygonMesh
 
 WELD = 1e-6
 """Default distance up to which points of open edges are joined, in longest sides of the box around the mesh."""
