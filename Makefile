@@ -23,5 +23,6 @@ $(BIN)/pip:
 	$(PYTHON) -m venv .venv
 
 .venv/%.installed: pyproject.toml | $(BIN)/pip
+	@echo "installing what is needed into .venv: once, for a minute or two"
 	$(BIN)/python -m pip install --quiet --editable '.[$*]'
 	touch $@

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""The gingerbread man and his plane cage: ``python -m assets.gingerbread`` writes gingerbread.usdc and its cage.
+"""The gingerbread man and his plane cage: ``python -m assets.gingerbread`` writes gingerbread.usdc, its cage and icing.
 
 A flat mesh in a cage of segments. Metres, +Y up, 1 m tall. Edges run along the borders of the icing.
 """
@@ -124,3 +124,4 @@ if __name__ == "__main__":
     points, triangles = gingerbread_mesh()
     write_mesh(FOLDER / "gingerbread.usdc", lifted(points), triangles, name="gingerbread", up_axis="Y")
     write_cage(FOLDER / "gingerbread_cage.usda", gingerbread_cage(), name="gingerbread_cage", up_axis="Y")
+    write_cage(FOLDER / "gingerbread_icing.usda", icing(), name="gingerbread_icing", up_axis="Y")

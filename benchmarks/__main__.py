@@ -9,8 +9,11 @@ import importlib
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
-NAMES = ("accuracy", "distance", "fingerprint", "locality", "pictures", "solve", "table1", "topology")
+from benchmarks.revisions import with_kept
+
+NAMES = ("accuracy", "distance", "fingerprint", "locality", "pages", "pictures", "solve", "table1", "topology")
 
 
 def benchmark_list() -> str:
@@ -21,7 +24,8 @@ def benchmark_list() -> str:
         lines.append(f"  {name:<12} {ast.get_docstring(module).splitlines()[0]}")
     lines += [
         "",
-        "Most take --json FILE, to keep their figures, and --compare FILE, to print what differs from kept ones.",
+        "Most take --json FILE, to keep their figures, and --compare FILE, to print what differs from kept ones; with",
+        "--compare REV they are run at another commit before, on this machine.",
     ]
     return "\n".join(lines)
 
@@ -42,7 +46,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments[0] not in NAMES:
         print(f"there is no benchmark {arguments[0]!r}\n{benchmark_list()}", file=sys.stderr)
         return 2
-    found = importlib.import_module(f"benchmarks.{arguments[0]}").main(arguments[1:])
+    with TemporaryDirectory() as folder:
+        try:
+            options = with_kept(arguments[0], arguments[1:], Path(folder))
+        except ValueError as error:
+            print(error, file=sys.stderr)
+            return 2
+        found = importlib.import_module(f"benchmarks.{arguments[0]}").main(options)
     return found if isinstance(found, int) else 0
 
 

@@ -71,8 +71,10 @@ def write_page(found: dict, folder: Path) -> None:
         folder: Where to.
     """
     lines = ["# Accuracy", "", _INTRODUCTION.format(**_sizes(found)), "![errors for time](accuracy.png)", ""]
-    lines += ["## Squared error of the paper's method over that of a fit at the same time", "", *_gain_lines(found)]
-    lines += ["", "## The references", "", *_reference_lines(found)]
+    for against, name in (("affine", "the paper's method"), ("harmonic", "harmonic controls")):
+        lines += [f"## Squared error of {name} over that of a fit at the same time", "", *_gain_lines(found, against)]
+        lines += [""]
+    lines += ["## The references", "", *_reference_lines(found)]
     for name, scene in found["scenes"].items():
         lines += ["", f"## {name}: {scene['faces']} faces, {scene['points']} points", "", *_scene_lines(scene)]
     (folder / "accuracy.md").write_text("\n".join(lines) + "\n")
@@ -124,14 +126,14 @@ def gain(scene: dict, stage: str, kind: str, *, walks: int, against: str = "affi
     return float(squared / error**2), bounded
 
 
-def _gain_lines(found: dict) -> Iterator[str]:
+def _gain_lines(found: dict, against: str) -> Iterator[str]:
     rows = []
     for name, scene in found["scenes"].items():
         cells = []
         for kind in ("weights", "gradients"):
             for stage in ("before", "during"):
                 for walks in (0, _WALKED):
-                    value, bounded = gain(scene, stage, kind, walks=walks)
+                    value, bounded = gain(scene, stage, kind, walks=walks, against=against)
                     cells.append(f"{'>' if bounded else ''}{value:.3g}")
         rows.append([name, *cells])
     head = ["scene"] + [
@@ -193,13 +195,14 @@ def _draw(found: dict, path: Path) -> None:
                 place.loglog(seconds, errors, "o-", color=_COLORS[method], markersize=3.5, label=LABELS[method])
             own = np.sqrt(scene["references"][stage]["own"]["weights"])
             place.axhspan(0.0, own, color="0.88", zorder=0, label="error of the reference")
-            place.set_title(f"{name}, {'first weights' if stage == 'before' else 'a step of the cut'}", fontsize=8.5)
+            place.set_title(
+                f"{name}, {'first weights' if stage == 'before' else 'a step of the cut'} [s]", fontsize=8.5
+            )
             place.grid(alpha=0.3, which="major", linewidth=0.5)
             place.xaxis.set_minor_formatter("")
         for place in axes[len(panels) :]:
             place.set_axis_off()
-        figure.supxlabel("time [s]")
         figure.supylabel("error of a point's weights")
         handles, labels = axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False)
+        figure.legend(handles, labels, loc="outside upper center", ncols=6, frameon=False)
         figure.savefig(path, dpi=100, metadata={"Software": None})

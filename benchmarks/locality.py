@@ -5,14 +5,12 @@
 ``python -m benchmarks.locality`` cuts OCTOPUS at three places and counts, for each vertex of the mesh, the walks that
 the cut changes (figure 12); and it cuts STARFISH in three directions and compares the walks that each kind of bounding
 volume flags, in steps of 3 %, with those that really change (figure 13). A third table cuts a star in the plane and the
-prism on it alike (section 7: locality is "more pronounced in 3D"). A walk that meets a cut goes
-on from there with smaller spheres, so it lands elsewhere: a walk has changed where its landing has.
+prism on it alike (section 7: locality is "more pronounced in 3D"). The report does the same with any scene.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
@@ -23,14 +21,15 @@ from tqdm import tqdm
 from assets.starfish import ARM_ANGLES
 from benchmarks.progressive import parsed, parser_of, show
 from benchmarks.scenes import DOWN, SCENES, across_octopus_arm
-from newton_cagecut import Blade, Cage, HarmonicCoordinates
+from newton_cagecut import Blade
+from newton_cagecut.report.cuts.following import Followed, follow
+from newton_cagecut.report.cuts.locality import dimension_counts
 from newton_cagecut.report.page.markdown import Table
-from newton_cagecut.report.paper.cutting import edits, step_count
+from newton_cagecut.report.paper.cutting import step_count
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_UP = (0.0, 0.0, 1.0)
 BOUNDS = ("dop26", "dop18", "aabb", "sphere")
 SHARES = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0)  # edges of the histogram's bins
 _BINS = ["none", *(f"{100.0 * a:g} to {100.0 * b:g}" for a, b in zip(SHARES, SHARES[1:]))]
@@ -65,64 +64,22 @@ DIRECTIONS = {
 """Cuts of STARFISH."""
 
 
-@dataclass
-class Flagged:
-    """Walks flagged and walks changed by one cut.
-
-    Attributes:
-        flagged: Share of the walks that were flagged, of each step.
-        changed: Share of the walks whose landing changed, of each step.
-        touched: For each walk whether some step changed it, shape ``(walk_count,)``.
-    """
-
-    flagged: list[float]
-    changed: list[float]
-    touched: np.ndarray
-
-    @property
-    def in_vain(self) -> float:
-        """Flagged walks that did not change, for each one that did."""
-        return sum(self.flagged) / sum(self.changed) - 1.0
-
-
-def follow(cage: Cage, points: np.ndarray, blade: Blade, walks: int, label: str, **options) -> Flagged:
-    """Cut a cage by one blade and count walks.
-
-    Args:
-        cage: The cage.
-        points: Points in it [m], shape ``(n, dimension)``.
-        blade: The blade.
-        walks: Walks a point.
-        label: What is being done, for the bar on standard error.
-        options: Further options of the coordinates.
-    """
-    coordinates = HarmonicCoordinates(cage, points, walks, **options)
-    before = _landings(coordinates)
-    found = Flagged([], [], np.zeros(len(before), dtype=bool))
-    for edit in tqdm(edits(cage, [blade]), desc=label, total=step_count(), unit="step"):
-        found.flagged.append(coordinates.update(edit).rewalked / len(before))
-        after = _landings(coordinates)
-        changed = (before != after).any(axis=1)
-        found.changed.append(changed.mean())
-        found.touched |= changed
-        before = after
-    return found
-
-
-def _landings(coordinates: HarmonicCoordinates) -> np.ndarray:
-    """Return where each walk landed, with the wall's side, as bits, shape ``(walk_count, n)``."""
-    landings = coordinates.landings
-    return np.column_stack([np.ascontiguousarray(landings["point"]).view(np.int32), landings["key"]])
+def _bar(label: str) -> Callable[[], object]:
+    """A bar on standard error, as what is called after each step."""
+    return tqdm(desc=label, total=step_count(), unit="step").update
 
 
 def place_shares(walks: int, **options) -> dict[str, np.ndarray]:
     """Return, for each place of a cut through OCTOPUS, the share of each vertex's walks that the cut changes."""
     scene = SCENES["octopus"]
-    found = {place: follow(scene.cage, scene.points, blade, walks, place, **options) for place, blade in PLACES.items()}
+    found = {
+        place: follow(scene.cage, scene.points, blade, walks, on_step=_bar(place), **options)
+        for place, blade in PLACES.items()
+    }
     return {place: flagged.touched.reshape(-1, walks).mean(axis=1) for place, flagged in found.items()}
 
 
-def bounds_counts(walks: int, **options) -> dict[tuple[str, str], Flagged]:
+def bounds_counts(walks: int, **options) -> dict[tuple[str, str], Followed]:
     """Return, for each direction of a cut through STARFISH and kind of bounds, the walks flagged and changed."""
     found, scene = {}, SCENES["starfish"]
     for direction, blade in DIRECTIONS.items():
@@ -130,31 +87,11 @@ def bounds_counts(walks: int, **options) -> dict[tuple[str, str], Flagged]:
             try:
                 label = f"{direction}, {bounds}"
                 found[direction, bounds] = follow(
-                    scene.cage, scene.points, blade, walks, label, bounds=bounds, **options
+                    scene.cage, scene.points, blade, walks, on_step=_bar(label), bounds=bounds, **options
                 )
             except ValueError as error:
                 print(f"{bounds} left out: {error}")
     return found
-
-
-def dimension_counts(walks: int, **options) -> dict[str, Flagged]:
-    """Return the walks that a cut across an arm of a star changes, in the plane and in the prism on the star.
-
-    The points in the prism are those of the plane at half of its height, which is as wide as the arm is at the cut.
-    """
-    angle = np.pi / 5.0 * np.arange(10)
-    outline = np.where(np.arange(10) % 2 == 0, 1.0, 0.4)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    plane = Cage(outline, [(i, (i + 1) % 10) for i in range(10)])
-    points = np.random.default_rng(1).uniform(-1.0, 1.0, (4000, 2))
-    points, height = points[plane.contains(points)], 0.3
-    sides = [(i, (i + 1) % 10, 10 + (i + 1) % 10, 10 + i) for i in range(10)]
-    corners = np.concatenate([np.c_[outline, np.full(10, z)] for z in (0.0, height)])
-    prism = Cage(corners, [tuple(range(10))[::-1], tuple(range(10, 20)), *sides])
-    inside = np.c_[points, np.full(len(points), 0.5 * height)]
-    return {
-        "star in 2D": follow(plane, points, Blade((0.6, 1.0), (0.0, -1.0)), walks, "2D", **options),
-        "prism in 3D": follow(prism, inside, Blade((0.6, 1.0, 0.0), _UP, (0.0, -1.0, 0.0)), walks, "3D", **options),
-    }
 
 
 def histogram(share: np.ndarray) -> np.ndarray:
@@ -172,7 +109,7 @@ def place_table(shares: dict[str, np.ndarray]) -> Table:
     return Table("OCTOPUS: vertices [%] by the share of their walks that a whole cut changes", _HEAD, rows)
 
 
-def bounds_table(found: dict[tuple[str, str], Flagged]) -> Table:
+def bounds_table(found: dict[tuple[str, str], Followed]) -> Table:
     """Return figure 13 as a table."""
     rows = []
     for key, counts in found.items():
@@ -182,7 +119,7 @@ def bounds_table(found: dict[tuple[str, str], Flagged]) -> Table:
     return Table("STARFISH: walks flagged and changed, means over the steps of a cut", head, rows)
 
 
-def dimension_table(found: dict[str, Flagged]) -> Table:
+def dimension_table(found: dict[str, Followed]) -> Table:
     """Return locality in both dimensions as a table."""
     rows = [
         [name, *(f"{100.0 * np.mean(share):.2f}" for share in (counts.flagged, counts.changed))]
@@ -191,7 +128,7 @@ def dimension_table(found: dict[str, Flagged]) -> Table:
     return Table("A cut across an arm, means over its steps", ["body", "flagged %", "changed %"], rows)
 
 
-def plot(shares: dict[str, np.ndarray], found: dict[tuple[str, str], Flagged], path: Path) -> None:
+def plot(shares: dict[str, np.ndarray], found: dict[tuple[str, str], Followed], path: Path) -> None:
     """Draw both figures.
 
     Args:

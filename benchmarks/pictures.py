@@ -16,7 +16,7 @@ from tqdm import tqdm
 
 from benchmarks.progressive import add_scenes
 from benchmarks.scenes import SCENES, BenchmarkScene
-from examples.picture import Camera, cage_edges, render_png, tube_mesh
+from examples.base.picture import Camera, cage_edges, render_png, tube_mesh
 from newton_cagecut.report.paper.cutting import edits
 from newton_cagecut.usd import read_mesh
 

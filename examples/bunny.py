@@ -1,24 +1,23 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""Newton's bunny sits on a block; what overhangs is cut off, and a second blade goes between the ears."""
+"""Newton's bunny sits on a block; what overhangs is cut off, and a second blade goes between the ears.
+
+Success criteria: two pieces, of which one lies on the ground and the other, slit, sits on the block.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import newton
+import newton.examples
 import warp as wp
 
 import newton_cagecut as cagecut
-from assets.bunny import bunny_mesh
-from examples.cutting import PlannedCut, frames_of
-from examples.picture import Camera
-from examples.recording import StaticMesh
-from examples.scene import CutScene
-from newton_cagecut.usd import read_cage
+from newton_cagecut.usd import read_cage, read_mesh
 
-CAGE = Path(__file__).parent.parent / "assets" / "bunny_cage.usda"
+from .base import ASSETS, Camera, CutScene, PlannedCut, frames_of
+
 SIZE = 0.3  # of the bunny, which comes 1.6 m tall
 BLOCK_CENTER, BLOCK_HALF = (-0.20, -0.05, 0.05), (0.20, 0.22, 0.05)  # [m]
 
@@ -32,18 +31,16 @@ CUTS = (
 
 
 class Example(CutScene):
-    """Newton's bunny sits on a block; what overhangs is cut off, and a second blade goes between the ears."""
-
     name = "bunny"
     frame_count = frames_of(CUTS) + 40
     skin_color, cap_color = (0.20, 0.075, 0.03), (0.85, 0.62, 0.40)
     camera = Camera(eye=(1.25, -1.15, 0.85), target=(0.02, -0.05, 0.2))
 
     def add_bodies(self, builder: newton.ModelBuilder) -> None:
-        cage = read_cage(CAGE)
+        cage = read_cage(ASSETS / "bunny_cage.usda")
         cage = cagecut.Cage(SIZE * cage.vertices, cage.faces)
-        points, triangles = bunny_mesh()
-        surface = cagecut.Surface(SIZE * points, triangles)
+        mesh = read_mesh(newton.examples.get_asset("bunny.usd"), up_axis="Z")
+        surface = cagecut.Surface(SIZE * mesh.points, mesh.triangles)
         room = cagecut.Capacity.for_cuts(cage, surface)
         cagecut.add_cage_body(
             builder,
@@ -57,12 +54,7 @@ class Example(CutScene):
             label="bunny",
         )
         hx, hy, hz = BLOCK_HALF
-        builder.add_shape_box(-1, xform=wp.transform(BLOCK_CENTER), hx=hx, hy=hy, hz=hz)
-        self.static_meshes = (StaticMesh.of(newton.Mesh.create_box(hx, hy, hz), BLOCK_CENTER),)
+        builder.add_shape_box(-1, xform=wp.transform(BLOCK_CENTER, wp.quat_identity()), hx=hx, hy=hy, hz=hz)
 
     def cuts(self) -> tuple[PlannedCut, ...]:
         return CUTS
-
-
-if __name__ == "__main__":
-    Example.main()

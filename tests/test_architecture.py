@@ -44,7 +44,7 @@ KNOWN_ROOMS = {
 LEVELS = {
     "harmonic": (
         ("correction_choice",),
-        ("journal", "launch", "options", "point_change", "stats"),
+        ("journal", "launch", "options", "point_change", "stats", "wanted_error"),
         ("walls",),
         ("walks",),
         ("faces",),

@@ -4,17 +4,22 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from PIL import Image
 
-from benchmarks import accuracy, locality, pictures, table1
+from benchmarks import accuracy, locality, pictures, revisions, table1
 from benchmarks.__main__ import NAMES
 from benchmarks.__main__ import main as run_benchmark
 from benchmarks.comparison import compared
+from benchmarks.error_for_time import STAGES, _line, stage_cages
+from benchmarks.error_page import gain, write_page
 from benchmarks.scenes import SCENES
 from newton_cagecut import HarmonicCoordinates
 from newton_cagecut.report.bench import spread
+from newton_cagecut.report.cuts.following import Followed, follow
 from newton_cagecut.report.paper.cutting import edits, step_count
 from newton_cagecut.report.paper.table1 import HEAD, measure_table, recompute_seconds
 
@@ -82,6 +87,32 @@ def test_runs_are_compared(tmp_path, capsys):
     assert not any("re-walk %" in line or "(paper)" in line for line in lines)
 
 
+def test_runs_are_compared_with_a_revision(tmp_path, monkeypatch):
+    """The benchmark is run in a checkout of the revision, with the other options; the checkout goes again."""
+    made = []
+
+    def run(command: list[str], **options: object) -> SimpleNamespace:
+        made.append(command)
+        if "benchmarks" in command:
+            assert options["env"]["PYTHONPATH"].startswith(str(tmp_path / "tree"))
+            (tmp_path / "kept.json").write_text("[]")
+        return SimpleNamespace(returncode=0, stdout="abc" if "rev-parse" in command else "")
+
+    monkeypatch.setattr(revisions.subprocess, "run", run)
+    given = ["--walks", "2", "--compare", "v1", "--json", "now.json"]
+    kept = str(tmp_path / "kept.json")
+    assert revisions.with_kept("table1", given, tmp_path) == [*given[:3], kept, *given[4:]]
+    assert made[2][1:] == ["-m", "benchmarks", "table1", "--walks", "2", "--json", kept]
+    assert [command[3:5] for command in made[1::2]] == [["worktree", "add"], ["worktree", "remove"]]
+    assert revisions.with_kept("table1", ["--compare", kept], tmp_path) == ["--compare", kept]
+
+
+def test_unknown_revision_is_refused(capsys):
+    """What is neither a file nor a revision is named, and nothing is run."""
+    assert run_benchmark(["table1", "--compare", "no-such-revision"]) == 2
+    assert "no-such-revision: there is neither such a file nor such a revision" in capsys.readouterr().err
+
+
 def test_comparison_matches_rows_by_their_names():
     """Rows are known by their leading texts; a new one is named, and the ratio is of the new to the old."""
     head = ["scene", "what", "ms"]
@@ -144,7 +175,7 @@ def test_error_of_the_reference_is_taken_off():
 def test_flagged_walks_hold_the_changed_ones():
     """No step changes more walks than it flagged; some were flagged in vain."""
     scene = SCENES["jelly"]
-    found = locality.follow(scene.cage, scene.points, scene.blades[0], 4, "jelly", device="cpu")
+    found = follow(scene.cage, scene.points, scene.blades[0], 4, device="cpu")
     assert len(found.flagged) == 34
     assert all(changed <= flagged for changed, flagged in zip(found.changed, found.flagged))
     assert found.in_vain > 0.0
@@ -159,7 +190,7 @@ def test_histogram_of_locality_counts_every_vertex():
 def test_figures_are_plotted(tmp_path):
     """Both figures go into one file."""
     pytest.importorskip("matplotlib")
-    flagged = locality.Flagged([0.2, 0.1], [0.1, 0.1], np.zeros(4, dtype=bool))
+    flagged = Followed([0.2, 0.1], [0.1, 0.1], np.zeros(4, dtype=bool))
     found = {(cut, kind): flagged for cut in locality.DIRECTIONS for kind in ("dop18", "aabb")}
     shares = {place: np.array([0.0, 0.02, 0.3]) for place in locality.PLACES}
     locality.plot(shares, found, tmp_path / "locality.png")
@@ -173,3 +204,38 @@ def test_scene_is_drawn_with_its_cage_and_cut(tmp_path):
     assert np.count_nonzero((red > 180) & (blue < 100)) > 500
     assert np.count_nonzero((blue > red + 80) & (green > red)) > 50
     assert np.count_nonzero(np.maximum(red, blue) < 60) > 100
+
+
+def test_errors_for_time_make_a_page(tmp_path):
+    """Gains are those at the time of the fit, without the reference's error, and the page has them and a picture."""
+    own = {
+        stage: {"own": {"weights": 1e-8, "gradients": 1e-8}, "check": [1.0, 1.0], "table_bias": 1e-5}
+        for stage in STAGES
+    }
+
+    def row(method: str, amount: int, squared: float, seconds: float) -> dict:
+        errors = {stage: {"weights": squared, "gradients": squared} for stage in STAGES}
+        return {"method": method, "amount": amount, "squared": errors, "seconds": {"first": seconds, "step": seconds}}
+
+    rows = [row("affine", 64, 1.6e-3, 1.0), row("affine", 1024, 1e-4 + 1e-8, 16.0)]
+    rows += [row("harmonic", 64, 8e-4, 1.0), row("harmonic", 1024, 5e-5, 16.0)]
+    rows += [row("fitted", 0, 1.1e-7, 2.0), row("fitted", 64, 1e-8, 4.0)]
+    scene = {"faces": 6, "points": 700, "references": own, "rows": rows}
+    value, bounded = gain(scene, "before", "weights", walks=0)
+    assert value == pytest.approx(1e-4 * 1024 / 128 / 1e-7)  # affine has made 128 walks in two seconds
+    assert not bounded
+    assert gain(scene, "during", "gradients", walks=64)[1]
+    settings = {"point_count": 4, "reference_walks": 8, "machine": {"cores": 2, "processor": "a processor"}}
+    write_page({"settings": settings, "scenes": {"cube": scene}}, tmp_path)
+    assert "| cube | 8e+03 |" in (tmp_path / "accuracy.md").read_text()
+    assert (tmp_path / "accuracy.png").stat().st_size > 1000
+
+
+def test_times_of_walks_are_linear():
+    """Time without walks and that of a walk, neither below 0; and a cage before, half way through and after its cut."""
+    assert _line((0, 4, 32), [1.0, 1.1, 1.8]) == pytest.approx((1.0, 0.025))
+    assert _line((4, 32), [1.0, 0.9]) == pytest.approx((1.0, 0.0))
+    scene = SCENES["jelly"]
+    cages = stage_cages(scene)
+    assert tuple(cages) == STAGES
+    assert [cage.piece_count for cage in cages.values()] == [1, 1, 2]

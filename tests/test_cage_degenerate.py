@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -116,3 +118,23 @@ def test_twenty_four_cuts(name):
     assert crossings(cage) == 0
     assert len(cage.walls) == len(base.walls) + 24
     assert cage.component_count > 24
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_blade_in_a_face_warns_of_the_sliver(dimension):
+    """A blade in the plane of a face tells of it if it is moved into the body there, and not if it is moved out."""
+    if dimension == 3:
+        cage, blades = box(), [Blade([1.0, 0.5, 2.0], [0.0, sign, 0.0], [0.0, 0.0, -1.0]) for sign in (1.0, -1.0)]
+    else:
+        cage, blades = square(), [Blade([1.0, 0.5 + 2.0 * sign], [0.0, -sign]) for sign in (1.0, -1.0)]
+    said = []
+    for blade in blades:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            cut = Cut(cage, blade)
+        said += [str(item.message) for item in caught]
+        assert bool(caught) == (cut.plane.origin[0] < 1.0)
+    (text,) = said
+    face = int(text.split("face ")[1].split()[0])
+    np.testing.assert_allclose(cage.vertices[list(cage.faces[face])][:, 0], 1.0)
+    assert "would cut off a sliver" in text

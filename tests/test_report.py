@@ -122,7 +122,8 @@ def test_page_is_made_from_the_file_alone(report, tmp_path):
     """Page and plots of the same file are the same, byte for byte."""
     write_page(read_report(report / "report.json"), ROWS, tmp_path)
     names = sorted(path.name for path in tmp_path.iterdir())
-    assert names == ["error_small.png", "error_small.svg", "growth.png", "growth.svg", "report.md"]
+    charts = ("bounds", "course", "error_small", "gains", "growth", "locality", "replay", "steps")
+    assert names == sorted([*(f"{name}.{ending}" for name in charts for ending in ("png", "svg")), "report.md"])
     for name in names:
         assert (tmp_path / name).read_bytes() == (report / name).read_bytes(), name
 
@@ -134,7 +135,7 @@ def test_page_shows_its_figures(report):
         assert f"{part}\n" in text or part in text
     assert "cagecut.HarmonicCoordinates(cage, points, walks=" in text
     assert "![small: error against run time](error_small.png)" in text
-    for method in ("walks, affine (the paper)", "fit, and walks", "finite elements, P2"):
+    for method in ("walks, affine (the paper)", "boundary fit, and walks", "finite elements, P2"):
         assert method in text
 
 

@@ -13,8 +13,12 @@ from .journal import Journal
 from .options import check_options
 from .point_change import PointChange
 from .stats import UpdateStats
+from .wanted_error import MOST_WALKS, chosen_walks, walks_for_error
 
 __all__ = [
+    "MOST_WALKS",
+    "chosen_walks",
+    "walks_for_error",
     "ClosedFormWeights",
     "CoordinatesSnapshot",
     "Domain",

@@ -14,6 +14,7 @@ import warp as wp
 
 from ..cage import Cage, CageEdit
 from ..geometry import as_callback, as_instance, as_path
+from . import point_checks
 from .cache.domain import Domain, domain_of
 from .cache.domain_state import DomainState
 from .cache.further_points import weights_of
@@ -26,16 +27,9 @@ from .journal import Journal
 from .options import WalkOptions, as_device
 from .placing import placed
 from .point_change import PointChange
-from .point_checks import (
-    checked_indices,
-    checked_keys,
-    checked_points,
-    checked_room,
-    require_uncovered,
-    require_vertex_room,
-)
 from .resolve.point_weights import PointWeights
 from .stats import UpdateStats
+from .wanted_error import chosen_walks
 
 
 class HarmonicCoordinates:
@@ -50,11 +44,13 @@ class HarmonicCoordinates:
     Args:
         cage: The cage, or a ``Domain`` that other coordinates hold already and that is to be shared.
         points: Rest positions inside the cage [m], shape (point_count, dimension).
-        walks: Walks a point. The standard error falls as the root of it. Fitted weights need none.
+        walks: Walks a point. The standard error falls as its root. Fitted weights need none. "auto": by ``error``.
         seed: Seed of all walks. The same seed on the same walls gives the same weights, bit for bit.
         gradients: Whether to estimate the weights' gradients: for all points, or those of a mask, shape (point_count,).
         cuttable: Whether to keep the walk cache that updates need (by default 64 bytes a walk, 32 in the plane).
         device: Where to walk; Warp's current device by default, or the domain's.
+        error: Wanted root mean square error of a point's weights, by as many walks as two short runs say it takes; with
+            ``walks="auto"`` 0.01 by default.
         correction: "harmonic" (control variates), "affine" (paper, equation 5), "none" (plain means) or "fitted": a
             boundary fit and the mean of what it leaves over where walks land; "auto": fitted unless the cage is large.
         bounds: Bounding volume of a walk: "dop18", "dop26", "aabb" or "sphere". Smaller ones send more walks to be
@@ -79,12 +75,13 @@ class HarmonicCoordinates:
         self,
         cage: Cage | Domain,
         points: np.ndarray,
-        walks: int = 1024,
+        walks: int | str = 1024,
         seed: int = 0,
         gradients: bool | np.ndarray = False,
         cuttable: bool = True,
         device: wp.context.Devicelike = None,
         *,
+        error: float | None = None,
         correction: str = "harmonic",
         bounds: str = "dop18",
         distance: str | None = None,
@@ -99,10 +96,12 @@ class HarmonicCoordinates:
     ) -> None:
         self.domain = domain_of(cage, quads=quads, distance=distance, device=device)
         self._state = state = self.domain.now
+        points = point_checks.checked_points(points, state.cage.dimension)
+        tried = {"correction": correction, "epsilon": epsilon, "max_steps": max_steps, "degree": degree}
+        walks = chosen_walks(walks, error, type(self), self.domain, points, tried)
         options = WalkOptions(walks, seed, correction, bounds, epsilon, max_steps, degree).chosen_for(state.cage)
-        points = checked_points(points, state.cage.dimension)
         count = len(points)
-        room = checked_room(point_capacity, vertex_capacity, gradients, cuttable, state.cage, count, walks)
+        room = point_checks.checked_room(point_capacity, vertex_capacity, gradients, cuttable, state.cage, count, walks)
         as_callback(progress, "progress")
         placement = placed(state, PointChange(np.arange(count), points, point_keys), capacity=count)
         self._cache = WalkCache(state, options, **room)
@@ -215,8 +214,8 @@ class HarmonicCoordinates:
             raise ValueError(
                 "update: the edit starts from another cage than the coordinates hold; pass every edit, in order"
             )
-        require_vertex_room(edit.cage.vertex_count, cache.vertex_capacity)
-        require_uncovered(edit, cache.keys, cache.rest)
+        point_checks.require_vertex_room(edit.cage.vertex_count, cache.vertex_capacity)
+        point_checks.require_uncovered(edit, cache.keys, cache.rest)
         stats = self._new_stats()
         with stats.time("walls", self.domain.device):
             after = self.domain.after(edit)
@@ -243,7 +242,7 @@ class HarmonicCoordinates:
             journal: Journal of a larger edit that this one is a part of, and that can take it back.
         """
         cache, state = self._cache, self.domain.now
-        require_vertex_room(state.cage.vertex_count, cache.vertex_capacity)
+        point_checks.require_vertex_room(state.cage.vertex_count, cache.vertex_capacity)
         weights, stats = cache.weights.grown(state.cage.vertex_count), self._new_stats()
         regrouped = cache.regrouped(state, retired_walls=np.zeros(0, dtype=np.int64), pieces_changed=True)
         with Journal.within(journal) as journal:
@@ -331,7 +330,7 @@ class HarmonicCoordinates:
                 options, which the text names; or its walks do not repeat themselves on this device.
         """
         coordinates = cls.__new__(cls)
-        path, points = as_path(path), checked_points(points, as_instance(cage, Cage, "cage").dimension)
+        path, points = as_path(path), point_checks.checked_points(points, as_instance(cage, Cage, "cage").dimension)
         cache, domain = load_cache(path, cage, points, device=as_device(device), options=options)
         coordinates._cache, coordinates.domain, coordinates._state = cache, domain, domain.now
         return coordinates
@@ -375,7 +374,7 @@ class HarmonicCoordinates:
             ValueError: An index is of no point, is there twice, or was removed before. Nothing has changed then.
         """
         cache = self._cache_of("remove_points")
-        indices = checked_indices(indices)
+        indices = point_checks.checked_indices(indices)
         gone = indices[(indices >= self.point_count) | np.isin(indices, self.removed_points)]
         if len(gone):
             raise ValueError(
@@ -398,8 +397,8 @@ class HarmonicCoordinates:
         Raises:
             ValueError: A key is of no wall.
         """
-        count = len(checked_points(points, self.cage.dimension))
-        checked_keys(point_keys, count, len(self.cage.walls), lowest=0)
+        count = len(point_checks.checked_points(points, self.cage.dimension))
+        point_checks.checked_keys(point_keys, count, len(self.cage.walls), lowest=0)
         return self.weights_at(points, point_keys, walks=walks)
 
     def weights_at(self, points: np.ndarray, point_keys: np.ndarray | None = None, *, walks: int = 1024) -> np.ndarray:
@@ -418,7 +417,7 @@ class HarmonicCoordinates:
         """
         own = self._cache.options
         options = own if own.correction == "fitted" else WalkOptions(walks, own.seed, epsilon=own.epsilon)
-        points = checked_points(points, self.cage.dimension)
+        points = point_checks.checked_points(points, self.cage.dimension)
         count = len(points)
         placement = placed(self._state, PointChange(np.arange(count), points, point_keys), capacity=count)
         return weights_of(self._state, placement, options)

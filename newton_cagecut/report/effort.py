@@ -1,11 +1,13 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
 
-"""How much is measured: all of it, or a quick look."""
+"""How much is measured: all of it, a shorter run of the same, or a quick look."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+
+_SEEDED_WALKS = 4096  # of all runs of a point together, where there is more than one
 
 
 @dataclass(frozen=True)
@@ -13,11 +15,11 @@ class Effort:
     """Sizes of the measurements.
 
     Attributes:
-        name: "full" or "quick".
+        name: "full", "short" or "quick".
         point_count: Points of a scene: half of them vertices of its mesh, half quadrature points with gradients.
         walk_counts: Walks a point whose errors are measured.
         fitted_counts: Walks a point on top of a fit.
-        seeds: Seeds of the walks; each is a run of its own.
+        seeds: Seeds of the walks; each is a run of its own. Of many walks there are fewer runs, by :meth:`seeds_of`.
         reference_runs: Long runs of the reference, with seeds of their own.
         reference_walks: Walks a point of each.
         row_walks: Walks a point where the walks are not what is varied.
@@ -40,6 +42,14 @@ class Effort:
     face_counts: tuple[int, ...]
     point_counts: tuple[int, ...]
 
+    def seeds_of(self, walks: int) -> tuple[int, ...]:
+        """Return the seeds of runs with some walks a point: one run of many tells as much as several of few.
+
+        Args:
+            walks: Walks a point.
+        """
+        return self.seeds[: max(1, _SEEDED_WALKS // max(walks, 1))]
+
     def settings(self) -> dict:
         """All of it as JSON can hold it."""
         return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
@@ -59,10 +69,24 @@ QUICK = Effort(
     face_counts=(50, 200, 800),
     point_counts=(100, 400, 1600),
 )
+SHORT = Effort(
+    name="short",
+    point_count=512,
+    walk_counts=(8, 32, 128, 512, 2048),
+    fitted_counts=(0, 32, 128, 512),
+    seeds=(1, 2),
+    reference_runs=8,
+    reference_walks=4096,
+    row_walks=512,
+    cell_counts=(400, 2000, 10000),
+    table_walks=32,
+    face_counts=(50, 200, 800, 3200),
+    point_counts=(1000, 4000, 16000),
+)
 FULL = Effort(
     name="full",
     point_count=512,
-    walk_counts=tuple(1 << k for k in range(3, 13)),
+    walk_counts=tuple(1 << k for k in range(3, 15)),
     fitted_counts=(0, 8, 32, 128, 512, 2048),
     seeds=(1, 2, 3, 4),
     reference_runs=8,
@@ -73,3 +97,5 @@ FULL = Effort(
     face_counts=(50, 100, 200, 400, 800, 1600, 3200),
     point_counts=(1000, 4000, 16000, 64000),
 )
+EFFORTS = {effort.name: effort for effort in (QUICK, SHORT, FULL)}
+"""All of them by their names."""

@@ -41,7 +41,16 @@ def add_options(parser: ArgumentParser) -> None:
         "scenes", metavar="SCENE", nargs="*", help=f"what to measure (all of a checkout's; with --quick {quick})"
     )
     parser.add_argument("--device", help="Warp device (Warp's own choice)")
-    parser.add_argument("--quick", action="store_true", help="a quick look: fewer points, walks and sizes")
+    effort = parser.add_mutually_exclusive_group()
+    effort.add_argument(
+        "--effort",
+        choices=("quick", "short", "full"),
+        default="full",
+        help="how much is measured: on two cores a minute a scene, five, or fifteen (full)",
+    )
+    effort.add_argument(
+        "--quick", action="store_const", dest="effort", const="quick", help="the same as --effort quick"
+    )
     parser.add_argument("--out", metavar="DIR", type=Path, default=Path("report"), help="folder to write to (./report)")
 
 
@@ -63,14 +72,14 @@ def run(options: Namespace) -> int:
     import warp as wp
 
     wp.config.quiet = True  # before what imports kernels, for which Warp starts
-    from .effort import FULL, QUICK
+    from .effort import EFFORTS
     from .machine import chosen_device
     from .measuring import measure_all
     from .scenes.scene import load_scenes
 
     device = chosen_device(options.device)
-    scenes = load_scenes(options.scenes, QUICK_SCENES if options.quick else ())
-    return measure_all(scenes, QUICK if options.quick else FULL, device, options.out)
+    scenes = load_scenes(options.scenes, QUICK_SCENES if options.effort == "quick" else ())
+    return measure_all(scenes, EFFORTS[options.effort], device, options.out)
 
 
 def _require_extra() -> None:

@@ -15,7 +15,7 @@ import warp as wp
 from ..cage import Cage
 from ..elastic import Material
 from ..geometry import as_flag, as_index, as_instance, as_length, as_number, as_numbers, shown
-from ..harmonic import check_options
+from ..harmonic import HarmonicCoordinates, check_options, chosen_walks
 from ..surface import Surface
 from .body.capacity import MOST, Capacity
 from .body.contact_material import ContactMaterial
@@ -143,10 +143,15 @@ def as_fixed(fixed: np.ndarray | Sequence[int] | None, vertex_count: int) -> np.
     return mask
 
 
-def as_walks(walks: int | None, seed: int, options: dict[str, object]) -> int:
+def as_walks(
+    walks: int | str | None, error: float | None, cage: Cage, points: np.ndarray, seed: int, options: dict[str, object]
+) -> int:
     """Walks a point, checked with the other options of the body's coordinates.
 
     Args:
+        error: Wanted error of the weights, or None.
+        cage: The cage.
+        points: Points in it [m], shape (n, dimension).
         walks: What was passed; None for 256 on a CPU and 2048 (the paper's) on CUDA, or 0 of fitted weights.
         seed: Seed.
         options: Further keyword options of ``HarmonicCoordinates``.
@@ -155,6 +160,10 @@ def as_walks(walks: int | None, seed: int, options: dict[str, object]) -> int:
         TypeError: There is no such option.
         ValueError: A value is out of its range.
     """
+    if error is not None or isinstance(walks, str):
+        check_options({"walks": 1, "seed": seed, **options}, "add_cage_body")
+        tried = {name: value for name, value in options.items() if name != "bounds"}
+        walks = chosen_walks(walks, error, HarmonicCoordinates, cage, points, tried)
     if walks is None and options.get("correction") == "fitted":
         walks = 0
     if walks is None:

@@ -93,7 +93,8 @@ def add_cage_body(
     xform: wp.transform | None = None,
     velocity: Sequence[float] = (0.0, 0.0, 0.0),
     fixed: np.ndarray | Sequence[int] | None = None,
-    walks: int | None = None,
+    walks: int | str | None = None,
+    error: float | None = None,
     quadrature: int | None = None,
     capacity: Capacity | None = None,
     cuttable: bool = True,
@@ -127,6 +128,7 @@ def add_cage_body(
         fixed: Cage vertices that no step moves: their indices, or a mask over all; to move them, write targets
             to ``control.cagecut.target_q``. A vertex that a cut makes on a face, among fixed ones, is fixed too.
         walks: Walks a point; 256 on a CPU and 2048 (the paper's) on CUDA by default, none of fitted weights.
+        error: Wanted error of the weights, as in ``HarmonicCoordinates``, which walks are then chosen for.
         quadrature: Wanted number of quadrature points, by default 8 for each cage vertex and at least 300. 0 makes a
             body that is moved by its cage vertices alone, without elasticity.
         capacity: Room for cuts, by default ``Capacity.for_cuts(cage, surface)``, for a dozen of them.
@@ -178,7 +180,7 @@ def add_cage_body(
         surface=surface,
         material=arguments.as_material(material),
         fixed=arguments.as_fixed(fixed, cage.vertex_count),
-        walks=arguments.as_walks(walks, seed, options),
+        walks=arguments.as_walks(walks, error, cage, surface.site_points, seed, options),
         seed=seed,
         quadrature_count=arguments.as_quadrature_count(quadrature, cage.vertex_count),
         cuttable=cuttable,

@@ -49,14 +49,14 @@ class SceneRecorder:
 
 def _body_frame(body: SimulatedBody, state: newton.State) -> BodyFrame:
     """A cage body in a state."""
-    surface = body.surface
+    surface, rest = body.surface, body.surface.mesh.vertices
     has_uvs = surface.uvs is not None or surface.own_corner_uvs is not None
     return BodyFrame(
         name=body.label.replace("/", "_"),
         points=body.surface_points(state).numpy().copy(),
         triangles=surface.triangles,
         triangle_cap=surface.triangle_cap,
-        rest_points=surface.mesh.vertices,
+        rest_points=rest if surface.point_site is None else rest[surface.point_site],
         velocities=body.surface_velocities(state),
         uvs=None if body.is_plane and not has_uvs else surface.corner_uvs(body.cage.walls),
         has_skin_uvs=has_uvs,

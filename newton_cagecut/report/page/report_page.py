@@ -10,7 +10,8 @@ from pathlib import Path
 
 from ..measurement import Row
 from ..record_store import records_of
-from .chart import Chart, draw
+from .chart import Chart
+from .drawing import draw
 from .markdown import markdown_lines, section_lines
 
 FILE = "report.md"
@@ -49,7 +50,7 @@ def page_of(report: dict, rows: Sequence[Row]) -> tuple[str, list[Chart]]:
 def _heading(report: dict, count: int) -> str:
     settings, machine = report["settings"], report["machine"]
     return (
-        f"Made by `python -m newton_cagecut report{' --quick' if settings['name'] == 'quick' else ''}` on "
+        f"Made by `python -m newton_cagecut report --effort {settings['name']}` on "
         f"{machine['device']} ({machine['processor']}, {machine['cores']} cores), from {count} measurements. Seeds "
         f"{', '.join(map(str, settings['seeds']))}; those of the references from 1000 and 2000 on. All figures are in "
         "`report.json`."

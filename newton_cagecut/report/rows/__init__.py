@@ -4,7 +4,12 @@
 
 from __future__ import annotations
 
+from ..cuts.bounds_row import BoundsRow
+from ..cuts.course import CourseRow
+from ..cuts.locality import LocalityRow
+from ..cuts.replay import ReplayRow
 from ..measurement import Row
+from .bias import BiasRow
 from .elements_row import ElementsRow
 from .epsilon import EpsilonRow
 from .error_row import ErrorRow
@@ -19,8 +24,13 @@ ROWS: tuple[Row, ...] = (
     ErrorRow(),
     ElementsRow(),
     ExactRow(),
+    BiasRow(),
     EpsilonRow(),
     QuadsRow(),
     PaperTableRow(),
+    ReplayRow(),
+    LocalityRow(),
+    BoundsRow(),
+    CourseRow(),
     GrowthRow(),
 )

@@ -17,8 +17,8 @@ from .error import NAME as ERROR
 LABELS = {
     "none": "walks, plain",
     "affine": "walks, affine (the paper)",
-    "harmonic": "walks, harmonic",
-    "fitted": "fit, and walks",
+    "harmonic": "walks, harmonic controls",
+    "fitted": "boundary fit, and walks",
 }
 
 

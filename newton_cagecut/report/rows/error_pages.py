@@ -13,25 +13,23 @@ from ..bench import STAGES
 from ..measurement import Record, chosen, scenes_of
 from ..page.chart import Chart, Line, Panel
 from ..page.markdown import Section, Table, seconds_text
-from .error import CORRECTIONS, KINDS, WALKED
+from .error import KINDS, WALKED
 from .error import NAME as ERROR
 from .error_curves import Curve, all_curves, element_curve, walk_curve
+from .gains import TITLES, gains_chart, gains_table
 
-_TITLES = {"before": "before the cut", "during": "half way through the cut"}
 _Y_LABELS = {
     "weights": "error of a point's weights",
     "gradients": "relative error of gradients",
     "surface": "error of the deformed surface / diameter",
 }
-_DRAWN = ("weights", "gradients")
-_PAPER = "affine"
 _TEXT = (
     "Root mean square over the points: of the Euclidean norm of the errors of all of a point's weights; of that of its "
     "gradients, relative to the gradients; of where a smooth motion takes it, relative to the cage's diameter. Times "
     "are for all points, from the cage to the weights, kernels compiled before. The fit begins without walks. Half way "
-    "through the cut, walks are updated by the last step of 3 % (filled) or all walked again (hollow, dashed), which "
-    "gives the same weights bit for bit; the finite elements are meshed and solved again (hollow, dashed: the time "
-    "without meshing). Errors near the grey band cannot be told from those of the reference."
+    "through the cut, walks are updated by the last step of 3 % or all walked again, which gives the same weights bit "
+    "for bit; the finite elements are meshed and solved again. Errors near the grey band cannot be told from those of "
+    "the reference."
 )
 
 
@@ -43,7 +41,8 @@ def error_sections(records: Sequence[Record]) -> Iterator[Section]:
     """
     scenes = [scene for scene in scenes_of(records) if chosen(records, ERROR, scene)]
     if scenes:
-        yield Section("Error against run time", [_TEXT], [_gains(records, scenes)])
+        tables, charts = [gains_table(records, scenes)], [gains_chart(records, scenes)]
+        yield Section("Error against run time", [_TEXT], tables, charts)
     for scene in scenes:
         yield Section(
             f"Error against run time: {scene}",
@@ -60,7 +59,7 @@ def _notes(records: Sequence[Record], scene: str) -> list[str]:
         checks = " and ".join(f"{check:.2f}" for check in found["check"])
         notes.append(
             f"{found['points']} points in a cage that has {found['faces']} faces and {found['vertices']} vertices "
-            f"{_TITLES[record.parameters['stage']]}. Squared difference of the reference from plain runs over what "
+            f"{TITLES[record.parameters['stage']]}. Squared difference of the reference from plain runs over what "
             f"both their errors lead to expect: {checks}, of weights and of gradients (1 but for chance)."
         )
     failed = {
@@ -82,7 +81,7 @@ def _table(records: Sequence[Record], scene: str) -> Table:
         for k, curve in enumerate(curves["weights"]):
             errors = [f"{curves[kind][k].errors[-1]:.2e}" for kind in KINDS]
             times = [seconds_text(curve.seconds[-1]), _whole(records, scene, curve, stage)]
-            rows.append([_TITLES[stage], curve.label, f"{curve.amount[-1]:.0f}", *errors, *times])
+            rows.append([TITLES[stage], curve.label, f"{curve.amount[-1]:.0f}", *errors, *times])
     head = ["when", "method", "walks or unknowns", *KINDS, "time", "all walked again"]
     return Table("Errors of the most accurate run of each method:", head, rows)
 
@@ -96,34 +95,8 @@ def _whole(records: Sequence[Record], scene: str, curve: Curve, stage: str) -> s
     return ""
 
 
-def _gains(records: Sequence[Record], scenes: Sequence[str]) -> Table:
-    """Squared errors of the paper's method over those of others, at equal run time."""
-    rows = []
-    for scene in scenes:
-        for stage in STAGES:
-            cells = []
-            for correction in (name for name in CORRECTIONS if name != _PAPER):
-                for kind in _DRAWN:
-                    curves = [walk_curve(records, scene, name, stage, kind) for name in (_PAPER, correction)]
-                    cells.append("" if any(curve.empty for curve in curves) else _gain(*curves))
-            rows.append([scene, _TITLES[stage], *cells])
-    head = [f"{kind}, {name}" for name in CORRECTIONS if name != _PAPER for kind in _DRAWN]
-    title = (
-        "Squared error of the paper's method (affine) over that of another correction, at equal run time: the least "
-        "of squared error times time over the runs of each, because the one falls as the other grows. The reference's "
-        "own error is taken off; where hardly more is left, the gain is a lower bound (>)."
-    )
-    return Table(title, ["scene", "when", *head], rows)
-
-
-def _gain(paper: Curve, other: Curve) -> str:
-    costs = [curve.net**2 * curve.seconds for curve in (paper, other)]
-    best = costs[1].argmin()
-    return f"{'>' if other.bounded[best] else ''}{costs[0].min() / costs[1][best]:.3g}"
-
-
 def _chart(records: Sequence[Record], scene: str) -> Chart:
-    panels = [[_panel(records, scene, stage, kind) for stage in STAGES] for kind in _DRAWN]
+    panels = [[_panel(records, scene, stage, kind) for stage in STAGES] for kind in KINDS]
     return Chart(f"error_{scene}", f"{scene}: error against run time", panels)
 
 
@@ -133,12 +106,12 @@ def _panel(records: Sequence[Record], scene: str, stage: str, kind: str) -> Pane
         lines.append(_line(curve, curve.label, marker="s" if curve.label.startswith("finite") else "o"))
     for correction in WALKED if stage == "during" else ():
         whole = walk_curve(records, scene, correction, stage, kind, seconds="whole_seconds")
-        lines.append(_line(whole, f"{whole.label}, all again", like=whole.label))
+        lines.append(_line(whole, "all walked again", like=whole.label))
     solve = element_curve(records, scene, 2, stage, kind, seconds="solve_seconds")
-    lines.append(_line(solve, f"{solve.label}, mesh given", like=solve.label, marker="s"))
+    lines.append(_line(solve, "elements without the time of meshing", like=solve.label, marker="s"))
     floors = [record.values["own"][kind] for record in chosen(records, "reference", scene, stage=stage)]
     floor = float(np.sqrt(floors[0])) if floors else None
-    return Panel(_TITLES[stage], "time [s]", _Y_LABELS[kind], [line for line in lines if len(line.x)], floor)
+    return Panel(TITLES[stage], "run time [s]", _Y_LABELS[kind], [line for line in lines if len(line.x)], floor)
 
 
 def _line(curve: Curve, label: str, **options: str) -> Line:

@@ -36,7 +36,7 @@ class ErrorRow:
             yield {"correction": "fitted", "walks": walks, "seed": bench.effort.seeds[0]}
         for walks in bench.effort.walk_counts:
             for correction in WALKED:
-                for seed in bench.effort.seeds:
+                for seed in bench.effort.seeds_of(walks):
                     yield {"correction": correction, "walks": walks, "seed": seed}
 
     def sections(self, records: Sequence[Record]) -> Iterator[Section]:

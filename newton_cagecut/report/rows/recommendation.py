@@ -5,12 +5,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from ...harmonic import MOST_WALKS, walks_for_error
 from ..bench import Bench
 from ..fit import linear_of
 from ..measurement import Measurement, Record, chosen, scenes_of
@@ -21,7 +21,6 @@ from .error_curves import Curve, element_curve, walk_curve
 
 NAME = "recommendation"
 ERRORS = (3e-2, 1e-2, 3e-3, 1e-3)
-_MOST_WALKS = 1 << 24
 
 
 @dataclass(frozen=True)
@@ -95,7 +94,7 @@ def recommended(records: Sequence[Record], scene: str, error: float) -> Choice |
         if not before.amount[0] and max(curve.net[0] for curve in both) <= error:
             choices.append(Choice(correction, 0, *(curve.seconds[0] for curve in both)))
         walks = max(_walks_for(error, curve) for curve in both)
-        if walks <= _MOST_WALKS:
+        if walks <= MOST_WALKS:
             fits = [linear_of(curve.amount, curve.seconds) for curve in both]
             choices.append(Choice(correction, walks, *(start + slope * walks for start, slope in fits)))
     return min(choices, key=lambda choice: choice.seconds, default=None)
@@ -104,4 +103,4 @@ def recommended(records: Sequence[Record], scene: str, error: float) -> Choice |
 def _walks_for(error: float, curve: Curve) -> int:
     """Walks for an error, by the later half of the curve: control variates of few walks are still of low degree."""
     later = slice(len(curve.amount) // 2, None)
-    return max(1, math.ceil(float(np.mean((curve.net**2 * curve.amount)[later])) / error**2))
+    return walks_for_error(float(np.mean((curve.net**2 * curve.amount)[later])), error)

@@ -32,20 +32,23 @@ def build_of(name: str, *, walks: int | None = None) -> Build:
     path = Path(name)
     if path.suffix == ".py":
         return loaded_script(path).build
-    example = Path.cwd() / "examples" / f"{name}.py"
-    if not example.is_file():
+    folder = Path.cwd() / "examples"
+    example = next((file for file in folder.glob("**/*.py") if file.stem == name), None)
+    if example is None:
         raise ValueError(
             f"there is no scene {name!r}: give the path of a script with build(builder), or, in a checkout, the name "
             "of an example"
         )
     if str(Path.cwd()) not in sys.path:
         sys.path.insert(0, str(Path.cwd()))
-    kind = getattr(importlib.import_module(f"examples.{name}"), "Example", None)
+    kind = getattr(
+        importlib.import_module(".".join(example.relative_to(Path.cwd()).with_suffix("").parts)), "Example", None
+    )
     if not hasattr(kind, "add_bodies"):
         raise ValueError(f"{example} is not a scene: it has no Example with add_bodies(builder)")
 
     if walks is None and wp.get_device().is_cpu:
-        walks = importlib.import_module("examples.options").CPU_WALKS
+        walks = importlib.import_module("examples.base.options").CPU_WALKS
 
     def build(builder: newton.ModelBuilder) -> None:
         scene = object.__new__(kind)  # without a viewer and all else that showing it takes

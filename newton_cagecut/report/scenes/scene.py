@@ -114,15 +114,17 @@ def _scripted(path: Path) -> Scene:
     return PlainScene(path.stem, body.cage, np.asarray(body.surface.points), blades)
 
 
-def blade_across(cage: Cage) -> Blade:
-    """Return a blade through the middle of a cage, square to its longest side.
+def blade_across(cage: Cage, place: float = 0.5) -> Blade:
+    """Return a blade through a cage, square to its longest side.
 
     Args:
         cage: The cage.
+        place: Where along that side, as a share of it.
     """
     low, high = cage.vertices.min(axis=0), cage.vertices.max(axis=0)
     order = np.argsort(low - high, kind="stable")  # axes, the longest first
     axes = np.eye(cage.dimension)
     down = -axes[order[-1]]
     origin = 0.5 * (low + high) + (high - low)[order[-1]] * axes[order[-1]]
+    origin += (place - 0.5) * (high - low)[order[0]] * axes[order[0]]
     return Blade(origin, down) if cage.dimension == 2 else Blade(origin, axes[order[1]], down)

@@ -26,8 +26,8 @@ _MOST_CUTS = 1000
 _PLANES = 48
 _SHARE = 0.75
 """Share of planes that cross no more edges than a cut is taken to."""
-_CROSSED_VERTICES = 0.8
-_CROSSED_POINTS = 0.3
+_CROSSED_VERTICES = 1.2
+_CROSSED_POINTS = 0.7
 """What each earlier cut adds to the next one's, of what that takes alone, if all go through one another (measured)."""
 _SPARE = 16
 _MORE = 0.5
@@ -65,8 +65,8 @@ class Capacity:
             cage: The cage, as the body starts with it.
             surface: The surface.
             cuts: Number of cuts.
-            crossing: Whether all of them go through one another, in all of the body; a dozen take two to five times
-                the room then.
+            crossing: Whether all of them go through one another, in all of the body; a dozen take five to eight
+                times the room then.
 
         Raises:
             TypeError: An argument has the wrong type.

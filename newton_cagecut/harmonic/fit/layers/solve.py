@@ -84,6 +84,10 @@ def _solve_block(offset: int, matrix: wp.array2d[LANE], block: int, first_lane: 
             matrix[block * wp.static(BLOCK) + i, lane] -= factor * row
 
 
+_CHUNKS = {subtract_product: 256, _spread_block: 64, _solve_block: 16}
+"""Elements of each kernel that are worth a thread: some 100 us of work, twice what starting it costs."""
+
+
 class System:
     """A square system of equations with several right-hand sides, solved in place by elimination without pivoting.
 
@@ -158,4 +162,5 @@ class System:
         self._launch(subtract_product, count, block, first_block * BLOCK, first_lane, lanes)
 
     def _launch(self, kernel: wp.Kernel, count: int, *arguments: int) -> None:
-        launch(kernel, count, [self.matrix, *arguments], device=self.device, smallest_chunk=16)
+        chunk = _CHUNKS[kernel]
+        launch(kernel, count, [self.matrix, *arguments], device=self.device, smallest_chunk=chunk)

@@ -44,7 +44,7 @@ class Creases:
         step: From there to their ends, shape (n, 3).
         least: Greatest length of panels on them, shape (n,).
         growth: Length of panels a distance away, relative to the distance.
-        at_front: Whether an end of them lies on the front of a cut, shape (n,).
+        at_front: Whether a vertex of the cage lies on the front of a cut, shape (vertex_count,).
         fronts: Half-edges of each face along the front of a cut, as pairs of face and half-edge, shape (m, 2).
     """
 
@@ -126,7 +126,7 @@ def find_creases(cage: Cage, frame: UnitFrame, most: float, grading: Grading) ->
             [local[bent] * grading.shrink ** (2.0 * angle[bent] / np.pi - 2.0), corner_local * grading.shrink]
         ),
         grading.growth,
-        np.concatenate([at_front[ends[0]] | at_front[ends[1]], at_front[corner]]),
+        at_front,
         fronts,
     )
 

@@ -23,6 +23,8 @@ from .strips import fan_panels, strip_panels
 GRADINGS = (Grading(0.35, 1.75), Grading(0.6, 2.5), Grading(1.0, 4.0), Grading(1.0, np.inf))
 """From fine to coarse; with the last one only long panels are divided."""
 _ENOUGH_UNKNOWNS, _MOST_UNKNOWNS = 1600, 8000
+_MANY_CORNERS = 800
+"""Corners of faces from which on a coarse grading is likely to be the one."""
 _FLAT = 1e-9
 """Height of triangles without area, relative to their longest edges."""
 
@@ -160,7 +162,9 @@ def _whole_faces(
     mesh, count = cage.mesh, cage.face_count
     low, high = (ufunc.reduceat(vertices[mesh.face_vertex], mesh.face_start[:-1]) for ufunc in (np.minimum, np.maximum))
     near = creases.near((low + high) / 2.0, np.sqrt(((high - low) ** 2).sum(axis=1)) / 2.0, most)
-    rank = 2 * _latest_cut(cage, vertices, most / creases.growth) + (near & creases.at_front).any(axis=1)
+    rank = 2 * _latest_cut(cage, vertices, most / creases.growth)
+    # A cut that advances moves its front, and with it the panels of the faces that meet there.
+    rank += np.logical_or.reduceat(creases.at_front[mesh.face_vertex], mesh.face_start[:-1])
     rows = np.concatenate([creases.start, creases.step, creases.least[:, None]], axis=1)
     found: list[tuple[bytes, np.ndarray, np.ndarray]] = [
         (b"", np.zeros((0, 3, 3)), np.zeros((0, 3), dtype=int))
@@ -249,6 +253,8 @@ def affordable_panels(
 ) -> FacePanels:
     """Panels of the finest grading that leaves no more unknowns than a solve is quick for.
 
+    Cages of many faces are tried from the coarsest grading on, and few tries are made of others too.
+
     Args:
         cage: The cage.
         frame: Its unit frame.
@@ -262,13 +268,18 @@ def affordable_panels(
     known = {} if known is None else known
     before = dict(known)
     known.clear()
-    for grading in GRADINGS:
+    many = sum(map(len, cage.faces)) > _MANY_CORNERS
+    panels = None
+    for grading in reversed(GRADINGS) if many else GRADINGS:
         found = dict(before)
-        panels = face_panels(cage, frame, planes, most, grading, found)
+        tried = face_panels(cage, frame, planes, most, grading, found)
         known.update(found)
-        count = panels.unknown_count
-        if count <= _ENOUGH_UNKNOWNS:
+        enough = tried.unknown_count <= _ENOUGH_UNKNOWNS
+        if enough or not many or panels is None:
+            panels = tried
+        if enough != many:
             break
+    count = panels.unknown_count
     if count > _MOST_UNKNOWNS:
         raise ValueError(
             f"a fit of this cage of {cage.face_count} faces has {count} unknowns, {_MOST_UNKNOWNS} at most: "

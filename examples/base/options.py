@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from argparse import SUPPRESS, Action, ArgumentParser, ArgumentTypeError, Namespace
+from argparse import Action, ArgumentParser, ArgumentTypeError, Namespace
 
 CPU_WALKS = 256
 
@@ -43,12 +43,14 @@ def add_options(parser: ArgumentParser, name: str) -> None:
     group.add_argument("--picture", metavar="PATH", help="draw a picture to a PNG file, without OpenGL")
     group.add_argument("--picture-frame", type=int, metavar="FRAME", help="of this frame; None: the last one")
     group.add_argument("--timings", action="store_true", help="measure, also the full recompute, and print a table")
-    demo = {"viewer": "null", "quiet": True, "usd": f"{name}.usd", "picture": f"{name}.png", "timings": True}
+    files = {"usd": f"{name}.usd", "picture": f"{name}.png"}
+    demo = {"viewer": "null", "quiet": True, "timings": True, "demo": True, **files}
     group.add_argument(
         "--demo",
         action=DemoAction,
         nargs=0,
         const=demo,
-        default=SUPPRESS,
-        help=f"the same as --viewer null --quiet --usd {name}.usd --picture {name}.png --timings",
+        default=False,
+        help=f"the same as --viewer null --quiet --usd {name}.usd --picture {name}.png --timings, and says what "
+        "happens",
     )

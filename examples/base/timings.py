@@ -13,9 +13,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from examples.cutting import PlannedCut
 from newton_cagecut import CutReport, HarmonicCoordinates, SolverCageCut
 from newton_cagecut.report.page.markdown import table_lines
+
+from .cutting import PlannedCut
 
 RECOMPUTE_EVERY = 8  # steps of the first cut
 UPDATE_PARTS = {

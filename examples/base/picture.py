@@ -19,8 +19,9 @@ import numpy as np
 import warp as wp
 from PIL import Image
 
-from examples.picture_kernels import Look, render_rows
 from newton_cagecut.usd.normals import vertex_normals
+
+from .picture_kernels import Look, render_rows
 
 Color = tuple[float, float, float]
 Mesh = tuple[np.ndarray, np.ndarray, "np.ndarray | Color"]
@@ -64,24 +65,34 @@ class Camera:
         return Camera(eye=tuple(target + distance * back), target=tuple(target))
 
 
-def render_png(
-    path: str | PathLike,
+def render_png(path: str | PathLike, *arguments: object, **options: object) -> None:
+    """Draw meshes, +Z up, to a PNG; the arguments are those of :func:`render_pixels`.
+
+    Args:
+        path: The file.
+        arguments: What to draw, and from where.
+        options: How.
+    """
+    Image.fromarray(render_pixels(*arguments, **options)).save(path, optimize=True)
+
+
+def render_pixels(
     meshes: Sequence[Mesh],
     camera: Camera | None = None,
     size: tuple[int, int] = (1280, 720),
     *,
     ground: float | None = None,
     lamp: Sequence[float] = (-0.55, -0.45, 1.0),
-    background: tuple[Color, Color] = ((0.105, 0.135, 0.175), (0.62, 0.70, 0.78)),
+    background: tuple[Color, Color] = ((0.40, 0.37, 0.33), (0.90, 0.88, 0.84)),
     ray_count: int = 4,
     device: str | None = None,
-) -> None:
-    """Draw meshes, +Z up, to a PNG.
+) -> np.ndarray:
+    """Draw meshes, +Z up, and return 8-bit sRGB, shape ``(height, width, 3)``.
 
     Args:
-        path: The file.
         meshes: Of each mesh the points [m] ``(n, 3)``, the triangles ``(m, 3)`` and linear RGB: one colour, one a
-            triangle ``(m, 3)`` (the shading is smooth among triangles of one colour only) or one a vertex ``(n, 3)``.
+            triangle ``(m, 3)`` (the shading is smooth among triangles of one colour only), one a vertex ``(n, 3)`` or
+            one a corner ``(m, 3, 3)``.
         camera: Where from; ``None`` frames the meshes.
         size: Width and height in pixels.
         ground: Height of the ground [m]; ``None`` puts it under the lowest point.
@@ -108,7 +119,7 @@ def render_png(
     look.ray_count = ray_count
     with wp.ScopedDevice(device):
         pixels = _render(points, triangles, normals, colors, look, size)
-    Image.fromarray(_to_bytes(pixels)).save(path, optimize=True)
+    return _to_bytes(pixels)
 
 
 def tube_mesh(points: np.ndarray, edges: np.ndarray, radius: float, color: Color, *, sides: int = 8) -> Mesh:
@@ -172,6 +183,8 @@ def _with_corners(number: int, points: np.ndarray, triangles: np.ndarray, color:
     elif color.shape == (len(triangles), 3):
         corners = np.repeat(color, 3, axis=0)
         patch = np.unique(color, axis=0, return_inverse=True)[1].reshape(-1)
+    elif color.shape == (len(triangles), 3, 3):
+        corners = color.reshape(-1, 3)
     elif color.shape == (len(points), 3):
         corners = color[triangles.reshape(-1)]
     else:

@@ -25,6 +25,7 @@ class PlannedCut:
         until: How far the blade goes, as a fraction of the cut's length.
         pieces: Pieces of all bodies together after the cut.
         body: The body's index.
+        stop: Depth at which it ends, if not complete before [m].
         turns: Depths at which the blade turns [m], and the directions in which it goes on; see :func:`along`.
     """
 
@@ -35,24 +36,30 @@ class PlannedCut:
     pieces: int = 1
     body: int = 0
     turns: tuple[tuple[float, np.ndarray], ...] = ()
+    stop: float = math.inf
 
     def next_turn(self, depth: float) -> float:
         """Depth of the first turn beyond a depth, infinite without one [m]."""
         return min((turn for turn, _ in self.turns if turn > depth), default=math.inf)
 
 
-def along(cage: Cage, path: np.ndarray, **options: object) -> PlannedCut:
-    """Return the cut of a plane cage along a line of straight parts.
+def along(
+    cage: Cage, path: np.ndarray, *, edge: Sequence[float] | None = None, to_end: bool = False, **options: object
+) -> PlannedCut:
+    """Return the cut of a cage along a line of straight parts.
 
     Args:
         cage: The cage.
-        path: The line's corners, from the first, outside of the cage, to the last, shape (n, 2) [m].
+        path: The line's corners, from the first, outside of the cage, to the last, shape (n, dimension) [m].
+        edge: In space, the direction of the blade's edge.
+        to_end: Whether the cut ends where the line does, and not where it is complete.
         options: What else the cut has.
     """
     parts = np.diff(path, axis=0)
-    blade = Blade(path[0], parts[0], start=0.0)
+    blade = Blade(path[0], parts[0], start=0.0) if edge is None else Blade(path[0], edge, parts[0])
     depths = np.cumsum(np.linalg.norm(parts, axis=1)) - Cut(cage, blade).front
-    return PlannedCut(blade=blade, turns=tuple(zip(depths[:-1].tolist(), parts[1:])), **options)
+    stop = float(depths[-1]) if to_end else math.inf
+    return PlannedCut(blade=blade, turns=tuple(zip(depths[:-1].tolist(), parts[1:])), stop=stop, **options)
 
 
 class CutSchedule:
@@ -96,7 +103,7 @@ class CutSchedule:
                 return None
             self._active = self._solver.begin_cut(planned.body, planned.blade)
         cut, turn = self._active, planned.next_turn(self._active.depth)
-        end = planned.until * cut.length if math.isinf(turn) else turn
+        end = min(planned.until * cut.length, planned.stop) if math.isinf(turn) else turn
         report = self._solver.advance_cut(cut, to=min(cut.depth + self._step * cut.length, end), states=states)
         if cut.complete or (cut.depth >= end and end < turn):
             self._active, self._waited, self._number = None, 0, self._number + 1
