@@ -20,6 +20,9 @@ from ..surface import Surface
 from .body.capacity import MOST, Capacity
 from .body.contact_material import ContactMaterial
 
+_FIRMEST = 1.0e15
+"""Greatest value of a contact material."""
+
 
 def as_surface(
     mesh: Surface | tuple[np.ndarray, np.ndarray] | newton.Mesh,
@@ -248,15 +251,15 @@ def as_contact_material(radius: float | None, **values: float | None) -> Contact
 
     Raises:
         TypeError: A value is not a number.
-        ValueError: A value is negative or not finite, the stiffness is zero, or there is no contact radius.
+        ValueError: A value is negative or too large, the stiffness is zero, or there is no contact radius.
     """
     numbers = {}
     for name, value in values.items():
         numbers[name] = None if value is None else as_number(value, name)
         if value is not None and radius is None:
             raise ValueError(f"{name} is of no use without contact_radius; give both, or neither")
-        if value is not None and not 0.0 <= numbers[name] < np.inf:
-            raise ValueError(f"{name} must not be negative, and finite; got {numbers[name]:g}")
+        if value is not None and not 0.0 <= numbers[name] <= _FIRMEST:
+            raise ValueError(f"{name} must not be negative, and at most {_FIRMEST:g}; got {numbers[name]:g}")
     if numbers["contact_stiffness"] == 0.0:
         raise ValueError("contact_stiffness must be positive; leave contact_radius out for a body without contact")
     return ContactMaterial(numbers["contact_stiffness"], numbers["contact_damping"], numbers["friction"])
