@@ -13,7 +13,18 @@ from tempfile import TemporaryDirectory
 
 from benchmarks.revisions import with_kept
 
-NAMES = ("accuracy", "distance", "fingerprint", "locality", "pages", "pictures", "solve", "table1", "topology")
+NAMES = (
+    "accuracy",
+    "distance",
+    "fingerprint",
+    "locality",
+    "locking",
+    "pages",
+    "pictures",
+    "solve",
+    "table1",
+    "topology",
+)
 
 
 def benchmark_list() -> str:

@@ -13,7 +13,7 @@ GROUPS = {
     "hands on": ("interactive",),
     "to start from": ("minimal", "keyframed", "own_mesh", "texture", "extrude"),
     "after the paper": ("starfish", "dude", "key", "octopus", "jelly", "sphere", "gingerbread"),
-    "more": ("bunny", "surgery", "worlds"),
+    "more": ("bunny", "loaf", "surgery", "worlds"),
 }
 SCENES = tuple(name for group in GROUPS.values() for name in group)
 

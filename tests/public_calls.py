@@ -305,6 +305,7 @@ CALLS: dict[str, Call] = {
             "config": cagecut.SolverCageCut.Config(),
             "progress": False,
             "integrator": "paper",
+            "strain": "averaged",
             "newton_iterations": 1,
             "max_iterations": 20,
             "tolerance": 1e-3,

@@ -49,7 +49,7 @@ def make_probe(model, plane):
         i = wp.tid()
         energies[i] = energy(F[i], mu, lam)
         stresses[i] = stress(F[i], mu, lam)
-        stiffness = stiffness_function(F[i], mu, lam, wp.float64(1.0))
+        stiffness = stiffness_function(F[i], wp.vec2d(mu, lam), wp.vec2d(mu, lam), wp.float64(1.0))
         for k in range(directions.shape[0]):
             products[i, k] = apply_stiffness(stiffness, directions[k])
         matrices[i] = expanded(stiffness)

@@ -74,7 +74,7 @@ def test_minimal_scene_stands_alone(monkeypatch):
 
 @pytest.mark.parametrize(
     ("name", "frames", "cuts"),
-    [("keyframed", 20, 2), ("texture", 14, 2), ("dude", 44, 1), ("key", 24, 3), ("surgery", 24, 1)],
+    [("keyframed", 20, 2), ("texture", 14, 2), ("dude", 44, 1), ("key", 24, 3), ("surgery", 24, 1), ("loaf", 28, 3)],
 )
 def test_scene_passes_its_own_test(monkeypatch, tmp_path, name: str, frames: int, cuts: int):
     """All cuts are made, the scene's success criteria are met, and its animation is valid, with seams and textures."""

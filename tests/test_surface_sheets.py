@@ -137,6 +137,18 @@ def test_any_triangles_become_sheets(seed):
             assert closed_volume(now) == pytest.approx(volume, abs=1e-12)
 
 
+@pytest.mark.parametrize("name", [*CLOSED, *PARTLY_OPEN])
+def test_triangles_apart_become_the_same_sheets(name):
+    """A mesh whose triangles have points of their own gives the sheets of the one that shares them."""
+    points, triangles = {**CLOSED, **PARTLY_OPEN}[name][0]()
+    triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
+    whole = Surface(points, triangles)
+    apart = Surface(points[triangles.reshape(-1)], np.arange(3 * len(triangles)).reshape(-1, 3))
+    check_sheets(apart)
+    assert (apart.closed, apart.mesh.component_count) == (whole.closed, whole.mesh.component_count)
+    assert closed_volume(apart) == pytest.approx(closed_volume(whole))
+
+
 def test_what_is_given_of_triangles_goes_along():
     """Arrays of points, corners and triangles are those of the triangles that are left, turned with them."""
     points, triangles = box_with_doubled_triangles()

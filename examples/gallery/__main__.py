@@ -22,7 +22,7 @@ from ..base.drawing import drawn_meshes
 from ..base.picture import render_pixels
 
 FOLDER = Path(__file__).parent
-SIZE, RAY_COUNT, QUALITY = (384, 240), 4, 82
+SIZE, RAY_COUNT, QUALITY = (384, 240), 3, 82
 HOLD = 1500  # how long the last picture stays [ms]
 
 
@@ -39,26 +39,27 @@ class Loop:
 
     first: int = 0
     last: int = 100
-    every: int = 3
-    options: tuple[str, ...] = ("--walks", "64")
+    every: int = 4
+    options: tuple[str, ...] = ("--walks", "32")
 
 
 LOOPS = {
     "minimal": Loop(last=96, options=()),
     "keyframed": Loop(first=6, last=132),
     "own_mesh": Loop(first=9, last=96),
-    "texture": Loop(first=6, last=110, every=4),
-    "extrude": Loop(last=126, every=4, options=("--walks", "32")),
+    "texture": Loop(first=6, last=110),
+    "extrude": Loop(last=126),
     "starfish": Loop(first=21, last=165),
     "dude": Loop(last=96),
     "key": Loop(last=165),
-    "octopus": Loop(first=9, last=129, every=4, options=("--walks", "32")),
+    "octopus": Loop(first=9, last=129),
     "jelly": Loop(first=12, last=120),
-    "sphere": Loop(first=9, last=120, options=("--walks", "32")),
-    "gingerbread": Loop(first=6, last=258, every=4),
+    "sphere": Loop(first=9, last=120),
+    "gingerbread": Loop(first=6, last=258, every=6),
     "bunny": Loop(first=12, last=108),
+    "loaf": Loop(last=150),
     "surgery": Loop(last=120),
-    "worlds": Loop(first=4, last=74, every=2, options=()),
+    "worlds": Loop(first=4, last=74, every=3, options=("--worlds", "36")),
 }
 
 

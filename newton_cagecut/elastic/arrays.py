@@ -46,6 +46,10 @@ def put_matrix(values: wp.array2d[float], q: int, matrix: wp.mat33):
             values[3 * b + c, q] = matrix[b, c]
 
 
+_CLUSTER_VERTICES = 3
+"""There is room for a cluster of points for so many vertices; a piece has more."""
+
+
 @wp.struct
 class BodyArrays:
     """What a body is between edits; a step only reads it. The number of vertices includes the spare ones."""
@@ -69,12 +73,20 @@ class BodyArrays:
     """Lame's constants mu and lambda [Pa], damping [s] and density [kg/m^3], shape (1,)."""
     weights: wp.array2d[float]
     """Weights at the quadrature points, one a point and vertex."""
-    gradients: wp.array2d[wp.vec3]
+    point_gradients: wp.array2d[wp.vec3]
     """Gradients of the weights, one a point and vertex [1/m]."""
-    volumes: wp.array[float]
+    point_volumes: wp.array[float]
     """Volumes, one a point [m^3]."""
+    clusters: wp.array[int]
+    """The cluster that a row is of, one a row; none if strain is not averaged."""
+    softened: wp.array[wp.vec2d]
+    """Lame's constants mu and lambda of the material at the points, one a cluster [Pa]; likewise."""
+    gradients: wp.array2d[wp.vec3]
+    """Gradients that strain is taken with, of the points, then of the clusters, one a row and vertex [1/m]."""
+    volumes: wp.array[float]
+    """Volumes, one a row [m^3]."""
     anchors: wp.array[int]
-    """The vertex of greatest weight, one a point."""
+    """The vertex of greatest weight, one a row."""
     mass: wp.array2d[float]
     """Mass matrix, one a pair of vertices [kg]."""
     vertex_mass: wp.array[float]
@@ -171,6 +183,7 @@ def make_body_arrays(
     rotation: wp.array | None,
     piece: wp.array | None,
     plane: bool,
+    averaged: bool = False,
 ) -> BodyArrays:
     """The arrays of a body: those given, in place, and zeros for the others; see ``ReducedSystem``.
 
@@ -193,12 +206,19 @@ def make_body_arrays(
         }
         _check(given)
         for name, array in given.items():
-            setattr(body, name, array)
+            setattr(body, {"gradients": "point_gradients", "volumes": "point_volumes"}.get(name, name), array)
+        rows = points + (max(capacity // _CLUSTER_VERTICES, 1) if averaged else 0)
+        body.gradients, body.volumes = body.point_gradients, body.point_volumes
+        if averaged:
+            body.gradients = wp.zeros((rows, capacity), dtype=wp.vec3)
+            body.volumes = wp.zeros(rows, dtype=float)
+            body.clusters = wp.zeros(rows, dtype=int)
+            body.softened = wp.zeros(rows - points, dtype=wp.vec2d)
         if plane:
             body.normal = wp.zeros(1, dtype=wp.vec3d)
         body.piece_count = wp.ones(1, dtype=int)
         body.material = wp.zeros(1, dtype=wp.vec4d)
-        body.anchors = wp.zeros(points, dtype=int)
+        body.anchors = wp.zeros(rows, dtype=int)
         body.vertex_mass = wp.zeros(capacity, dtype=float)
         for name in ("mass", "stabilizing_stiffness", "stabilizing_mass"):
             setattr(body, name, wp.zeros((capacity, capacity), dtype=float))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import warp as wp
 
 from .arrays import BodyArrays
-from .constitutive import CONSTITUTIVE_MODELS
+from .averaging.row_functions import make_row_energy
 from .launching import launch_later
 from .step_kernels import gather, make_deformation_function, tie
 
@@ -49,14 +49,14 @@ def find_displacement(positions: wp.array[wp.vec3], body: BodyArrays, energies: 
 @functools.cache
 def make_elastic_energy_kernel(model: str, plane: bool) -> wp.Kernel:
     """The kernel that finds the elastic energy of every quadrature point, for one constitutive model."""
-    energy = CONSTITUTIVE_MODELS[model].energy
+    energy = make_row_energy(model)
     deformation = make_deformation_function(plane)
 
     @wp.kernel(enable_backward=False, module="unique")
     def elastic_energy(body: BodyArrays, energies: EnergyArrays):
         q = wp.tid()
         F = deformation(gather(q, energies.displacement, body), body)
-        energies.elastic[q] = wp.float64(body.volumes[q]) * energy(F, body.material[0][0], body.material[0][1])
+        energies.elastic[q] = wp.float64(body.volumes[q]) * energy(q, F, body)
 
     return elastic_energy
 

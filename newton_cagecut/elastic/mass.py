@@ -38,9 +38,9 @@ def assemble_mass(body: BodyArrays):
     total = wp.float64(0.0)
     if i < body.vertex_count[0] and j < body.vertex_count[0]:
         total = wp.float64(body.stabilizing_mass[i, j])
-        for q in range(body.volumes.shape[0]):
+        for q in range(body.point_volumes.shape[0]):
             product = wp.float64(body.weights[q, i]) * wp.float64(body.weights[q, j])
-            total += wp.float64(body.volumes[q]) * product
+            total += wp.float64(body.point_volumes[q]) * product
     body.mass[i, j] = float(body.material[0][3] * total)
 
 
@@ -51,8 +51,8 @@ def sum_mass(body: BodyArrays):
     row = wp.float64(0.0)
     if i < body.vertex_count[0]:
         total = wp.float64(0.0)
-        for q in range(body.volumes.shape[0]):
-            total += wp.float64(body.volumes[q])
+        for q in range(body.point_volumes.shape[0]):
+            total += wp.float64(body.point_volumes[q])
         for j in range(body.vertex_count[0]):
             row += wp.float64(body.mass[i, j])
         row = wp.max(row, LEAST * body.material[0][3] * total / wp.float64(body.vertex_count[0]))
@@ -70,7 +70,7 @@ def count_pieces(body: BodyArrays):
 
 def record_masses(body: BodyArrays) -> tuple[wp.Launch, ...]:
     """The launches that bring anchors, masses and the number of pieces up to date, in their order."""
-    capacity, points, device = body.rest.shape[0], body.volumes.shape[0], body.rest.device
+    capacity, points, device = body.rest.shape[0], body.point_volumes.shape[0], body.rest.device
     return (
         launch_later(find_anchors, points, [body], device),
         launch_later(assemble_mass, (capacity, capacity), [body], device),

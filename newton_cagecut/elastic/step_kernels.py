@@ -29,8 +29,8 @@ from .arrays import (
     matrix_of,
     put_matrix,
 )
-from .constitutive import CONSTITUTIVE_MODELS
-from .stiffness import Stiffness, apply_stiffness, make_stiffness_function
+from .averaging.row_functions import make_row_stiffness, make_row_stress
+from .stiffness import Stiffness, apply_stiffness
 
 wp.set_module_options({"enable_backward": False})
 
@@ -94,8 +94,8 @@ def begin_step(
 @functools.cache
 def make_strain_kernel(model: str, plane: bool) -> wp.Kernel:
     """The kernel that finds stress and stiffness at the quadrature points, for one constitutive model."""
-    stress = CONSTITUTIVE_MODELS[model].stress
-    stiffness_function = make_stiffness_function(model, plane)
+    stress = make_row_stress(model)
+    stiffness_function = make_row_stiffness(model, plane)
     deformation = make_deformation_function(plane)
 
     @wp.kernel(enable_backward=False, module="unique")
@@ -105,11 +105,10 @@ def make_strain_kernel(model: str, plane: bool) -> wp.Kernel:
         stiffness, force = Stiffness(), wp.mat33()
         if volume != wp.float64(0.0):
             R = body.rotation[0]
-            mu, lam = body.material[0][0], body.material[0][1]
             F = deformation(matrix_of(step.strain, q), body)
-            stiffness = stiffness_function(F, mu, lam, volume * step.scales[ELASTIC_STIFFNESS])
+            stiffness = stiffness_function(q, F, body, volume * step.scales[ELASTIC_STIFFNESS])
             stiffness.left = R * stiffness.left
-            force = R * wp.mat33(step.scales[ELASTIC_FORCE] * volume * stress(F, mu, lam))
+            force = R * wp.mat33(step.scales[ELASTIC_FORCE] * volume * stress(q, F, body))
             force += apply_stiffness(stiffness, matrix_of(step.drift, q))
         step.stiffnesses[q] = stiffness
         put_matrix(step.tensions, q, force)

@@ -62,26 +62,34 @@ def clamp_modes(modes: wp.vec3d) -> wp.vec3d:
 
 
 @functools.cache
-def make_stiffness_function(model: str, plane: bool) -> wp.Function:
-    """The function (F, mu, lam, scale) -> projected stiffness times scale, of one constitutive model.
+def make_stiffness_function(model: str, plane: bool, *, difference: bool = False) -> wp.Function:
+    """The function (F, lame, less, scale) -> projected stiffness times scale, of one constitutive model.
+
+    ``lame`` and ``less`` are pairs of Lame's constants.
 
     Args:
         model: The model.
         plane: Whether F and all its changes are plane: third row and column are the identity's.
+        difference: Whether the stiffness with the constants ``less`` is taken off; if not, they are not used.
     """
     chosen = CONSTITUTIVE_MODELS[model]
     stretch_block = chosen.stretch_block
     symmetric_modes, antisymmetric_modes = chosen.symmetric_modes, chosen.antisymmetric_modes
 
     @wp.func
-    def stiffness(F: wp.mat33d, mu: wp.float64, lam: wp.float64, scale: wp.float64) -> Stiffness:
+    def stiffness(F: wp.mat33d, lame: wp.vec2d, less: wp.vec2d, scale: wp.float64) -> Stiffness:
         if wp.static(plane):
             left, stretches, right = decompose_plane(F)
         else:
             left, stretches, right = decompose(F)
-        symmetric = clamp_modes(symmetric_modes(stretches, mu, lam))
-        antisymmetric = clamp_modes(antisymmetric_modes(stretches, mu, lam))
-        block = stretch_block(stretches, mu, lam)
+        symmetric = symmetric_modes(stretches, lame[0], lame[1])
+        antisymmetric = antisymmetric_modes(stretches, lame[0], lame[1])
+        block = stretch_block(stretches, lame[0], lame[1])
+        if wp.static(difference):
+            symmetric -= symmetric_modes(stretches, less[0], less[1])
+            antisymmetric -= antisymmetric_modes(stretches, less[0], less[1])
+            block -= stretch_block(stretches, less[0], less[1])
+        symmetric, antisymmetric = clamp_modes(symmetric), clamp_modes(antisymmetric)
         if wp.static(plane):
             third = wp.vec3d(wp.float64(0.0), wp.float64(0.0), wp.float64(1.0))
             symmetric, antisymmetric = symmetric[2] * third, antisymmetric[2] * third

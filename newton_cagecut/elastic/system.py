@@ -9,6 +9,7 @@ import numpy as np
 import warp as wp
 
 from .arrays import make_body_arrays
+from .averaging import ClusterFields, softened_moduli, strain_rows
 from .backward_euler import BackwardEuler
 from .energy import Energy, EnergyMeter
 from .implicit_integrator import Motion
@@ -51,6 +52,7 @@ class ReducedSystem:
             given.
         piece: The piece that a vertex belongs to, counted from 0, shape (vertex_capacity,) int; all one if not given.
         thickness: Thickness of a plane body [m]; the body is solid if not given.
+        averaged: Whether strain is averaged over clusters of points, against locking, by :meth:`stabilize`.
         integrator: One of ``INTEGRATORS``: ``"tr_bdf2"`` or ``"backward_euler"`` (see ``stages/scheme.py``), or
             ``"paper"`` for the paper's single step.
         newton_iterations: Linear solves in each stage; the paper's has one.
@@ -74,6 +76,7 @@ class ReducedSystem:
         rotation: wp.array | None = None,
         piece: wp.array | None = None,
         thickness: float | None = None,
+        averaged: bool = False,
         integrator: str = "tr_bdf2",
         newton_iterations: int = 1,
         limits: SolveLimits | None = None,
@@ -92,8 +95,11 @@ class ReducedSystem:
             rotation=rotation,
             piece=piece,
             plane=self.is_plane,
+            averaged=averaged,
         )
-        self.rest, self.weights, self.gradients, self.volumes = body.rest, body.weights, body.gradients, body.volumes
+        self.is_averaged = averaged
+        self.rest, self.weights = body.rest, body.weights
+        self.gradients, self.volumes = body.point_gradients, body.point_volumes
         self.vertex_count, self.fixed, self.rotation, self.piece = (
             body.vertex_count,
             body.fixed,
@@ -102,6 +108,7 @@ class ReducedSystem:
         )
         self.mass, self.vertex_mass = body.mass, body.vertex_mass
         self.stabilizing_stiffness, self.stabilizing_mass = body.stabilizing_stiffness, body.stabilizing_mass
+        self._fields: list[ClusterFields | None] = []
         self.record = make_step_record(self.device, None, None)
         options = {"limits": (limits or SolveLimits()).measured(material.poisson), "record": self.record}
         if integrator == "paper":
@@ -139,10 +146,37 @@ class ReducedSystem:
             )
         self.material = material
         self.arrays.material.assign(np.array([[*material.lame, material.damping, material.density]]))
+        self._soften()
         self.refresh()
 
+    def _average(self, vertices: np.ndarray) -> None:
+        """Average strain over clusters of points; see ``averaging``."""
+        body, count = self.arrays, len(vertices)
+        inputs = [array.numpy()[:, :count] for array in (self.weights, self.gradients)]
+        rows = strain_rows(vertices, *inputs, self.volumes.numpy(), self.piece.numpy()[:count], body.volumes.shape[0])
+        gradients = np.zeros((*body.gradients.shape, 3), dtype=np.float32)
+        gradients[:, :count] = rows.gradients
+        body.gradients.assign(gradients)
+        body.volumes.assign(rows.volumes.astype(np.float32))
+        body.anchors[self.point_count :].assign(rows.anchors.astype(np.int32))
+        body.clusters.assign(rows.clusters.astype(np.int32))
+        self._fields = rows.fields
+        self._soften()
+
+    def _soften(self) -> None:
+        """Set the constants of the material at the points."""
+        lame = self.material.lame
+        if not self.is_averaged:
+            return
+        softened = np.tile(lame, (self.arrays.softened.shape[0], 1))
+        for row, fields in zip(softened, self._fields, strict=False):
+            row[:] = softened_moduli(*lame, fields)
+        self.arrays.softened.assign(softened)
+
     def stabilize(self, vertices: np.ndarray, edges: np.ndarray) -> None:
-        """Tie vertices that the quadrature hardly sees to their neighbours; call :meth:`refresh` afterwards.
+        """Tie vertices that the quadrature hardly sees to their neighbours, and average strain; then :meth:`refresh`.
+
+        To be called anew after each edit. Strain is averaged if the system was made so.
 
         Args:
             vertices: The cage's vertices in use in its rest frame, shape (n, 3), or (n, 2) of a plane body [m].
@@ -155,6 +189,8 @@ class ReducedSystem:
         stiffness, mass = stabilize(vertices, edges, weights, gradients, volumes, thickness=thickness)
         _assign_block(self.stabilizing_stiffness, stiffness)
         self._tied_mass = mass
+        if self.is_averaged:
+            self._average(vertices)
 
     def refresh(self) -> None:
         """Bring masses, anchors and lanes up to date after an edit of weights, gradients, volumes or the count."""

@@ -14,6 +14,9 @@ from .live.foreign_rows import FOREIGN_ROWS
 _MOST_ITERATIONS = 1 << 30
 _CONTACTS = ("penalty", "firm")
 
+STRAINS = ("points", "averaged")
+"""Where strain can be taken."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Config:
@@ -52,10 +55,15 @@ class Config:
     larger ones have the inverses of its diagonal blocks. None for what was measured to pay: 110, or 300 for Poisson's
     ratios from 0.45 on, whose solves without a factor miss the tolerance."""
 
+    strain: str = "points"
+    """Where strain is taken: at the ``"points"`` of the quadrature, or ``"averaged"`` over clusters of them, which
+    locks far less in bending and near incompressibility; see ``docs/locking.md``."""
+
     def __post_init__(self) -> None:
         as_choice(self.foreign, tuple(FOREIGN_ROWS), "SolverCageCut foreign")
         as_choice(self.contact, _CONTACTS, "SolverCageCut contact")
         as_choice(self.integrator, tuple(INTEGRATORS), "SolverCageCut integrator")
+        as_choice(self.strain, STRAINS, "SolverCageCut strain")
         iterations = as_index(self.newton_iterations, "SolverCageCut newton_iterations")
         object.__setattr__(self, "newton_iterations", iterations)
         if iterations < 1:
@@ -80,6 +88,16 @@ class Config:
     def limits(self) -> SolveLimits:
         """How exactly linear systems are solved."""
         return SolveLimits(self.max_iterations, self.tolerance, self.dense_vertices)
+
+    @property
+    def system_options(self) -> dict[str, object]:
+        """What the elastic system of a body is made with."""
+        return {
+            "averaged": self.strain == "averaged",
+            "integrator": self.integrator,
+            "newton_iterations": self.newton_iterations,
+            "limits": self.limits,
+        }
 
     @classmethod
     def of(cls, config: Config | None, options: dict[str, object]) -> Config:

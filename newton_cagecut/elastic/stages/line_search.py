@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import warp as wp
 
 from ..arrays import DAMPING_SHARE, ELASTIC_FORCE, JOINED, BodyArrays, LinearSystem, StepArrays, matrix_of
-from ..constitutive import CONSTITUTIVE_MODELS
+from ..averaging.row_functions import make_row_energy
 from ..launching import launch_later
 from ..step_kernels import make_deformation_function
 from ..stiffness import apply_stiffness
@@ -57,7 +57,7 @@ def make_energy_kernel(model: str, plane: bool, whole: bool) -> wp.Kernel:
         plane: Whether the body is plane.
         whole: Whether for the whole solution; otherwise for its parts, where a piece does not take the whole.
     """
-    energy = CONSTITUTIVE_MODELS[model].energy
+    energy = make_row_energy(model)
     deformation = make_deformation_function(plane)
     first, end = (0, 1) if whole else (1, HALVINGS)
 
@@ -80,7 +80,7 @@ def make_energy_kernel(model: str, plane: bool, whole: bool) -> wp.Kernel:
         F = deformation(matrix_of(step.strain, q), body)
         change = matrix_of(step.change, q)
         dF = deformation(change, body) - wp.identity(3, dtype=wp.float64)
-        start = energy(F, mu, lam)
+        start = energy(q, F, body)
         slope, curvature = wp.float64(0.0), wp.float64(0.0)
         if step.scales[DAMPING_SHARE] > wp.float64(0.0):
             before = apply_stiffness(step.stiffnesses[q], matrix_of(step.drift, q))
@@ -89,7 +89,7 @@ def make_energy_kernel(model: str, plane: bool, whole: bool) -> wp.Kernel:
             curvature = step.scales[DAMPING_SHARE] * wp.float64(wp.ddot(change, after))
         part = wp.float64(wp.static(0.5**first))
         for m in range(wp.static(first), wp.static(end)):
-            rise = scale * (energy(F + part * dF, mu, lam) - start)
+            rise = scale * (energy(q, F + part * dF, body) - start)
             search.energies[q, m] = rise + part * slope + wp.float64(0.5) * part * part * curvature
             part *= wp.float64(0.5)
         search.energies[q, wp.static(HALVINGS)] = scale * (lam + wp.float64(2.0) * mu) * wp.sqrt(wp.ddot(dF, dF))

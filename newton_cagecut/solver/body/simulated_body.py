@@ -432,9 +432,7 @@ class SimulatedBody:
             rotation=wp.array([self._frame.rotation], dtype=wp.mat33, device=self.device),
             thickness=self.definition.thickness,
             piece=self.piece,
-            integrator=self.config.integrator,
-            newton_iterations=self.config.newton_iterations,
-            limits=self.config.limits,
+            **self.config.system_options,
         )
 
     def padded(self, mask: np.ndarray) -> np.ndarray:

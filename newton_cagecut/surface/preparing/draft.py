@@ -143,6 +143,8 @@ class Draft:
 
     def _part_points(self, fan: np.ndarray) -> None:
         """Give each fan of corners a site, and each sheet points, of its own."""
+        if fan.max(initial=-1) + 1 == np.count_nonzero(np.bincount(self._corners.reshape(-1))):
+            return
         point_site = np.arange(len(self.points)) if self.point_site is None else self.point_site
         parting = Parting.of(self.triangles, point_site, len(self.site_points), fan)
         self.triangles = parting.triangles

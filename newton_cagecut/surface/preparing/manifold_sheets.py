@@ -34,8 +34,9 @@ def repeated(triangles: np.ndarray) -> np.ndarray:
     """Triangles that are there before, around the same points in the same direction, as a mask."""
     first = triangles.argmin(axis=1)
     around = np.take_along_axis(triangles, (first[:, None] + np.arange(3)) % 3, axis=1)
-    again = np.ones(len(triangles), dtype=bool)
-    again[np.unique(around, axis=0, return_index=True)[1]] = False
+    order = np.lexsort(around.T)
+    again = np.zeros(len(triangles), dtype=bool)
+    again[order[1:]] = (around[order[1:]] == around[order[:-1]]).all(axis=1)
     return again
 
 

@@ -24,7 +24,8 @@ def weld_seams(mesh: PolygonMesh, tolerance: float, *, apart: np.ndarray) -> np.
     """The first of the points at the place of each, shape (point_count,).
 
     Points are joined where two open edges that run in opposite directions lie on each other, end on end, and where an
-    open edge has no length.
+    open edge has no length; also where just two edges lie on each other that run alike, since one triangle is turned
+    over then, unless they are of the same triangle, given twice.
 
     Args:
         mesh: The triangles with their points.
@@ -42,11 +43,15 @@ def weld_seams(mesh: PolygonMesh, tolerance: float, *, apart: np.ndarray) -> np.
     if place is None:
         return np.arange(count)
     one, other = _opposite_pairs(place[start], place[end], count)
+    third = mesh.face_vertex[mesh.next[mesh.next[border[free]]]]
+    turned, back = _alike_pairs(place[start], place[end], mesh.vertices[third], tolerance)
     short = np.flatnonzero(place[start] == place[end])
     pairs = np.concatenate(
         [
             np.stack([start[one], end[other]], axis=1),
             np.stack([end[one], start[other]], axis=1),
+            np.stack([start[turned], start[back]], axis=1),
+            np.stack([end[turned], end[back]], axis=1),
             np.stack([start[short], end[short]], axis=1),
         ]
     )
@@ -76,6 +81,28 @@ def _opposite_pairs(start: np.ndarray, end: np.ndarray, count: int) -> tuple[np.
     one = np.repeat(np.arange(len(start)), size)
     within = np.arange(len(one)) - np.repeat(np.cumsum(size) - size, size)
     return one, order[np.repeat(first, size) + within]
+
+
+def _alike_pairs(
+    start: np.ndarray, end: np.ndarray, third: np.ndarray, tolerance: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of edges between two places, where there are just these, that run alike in triangles that differ.
+
+    Args:
+        start: Place at which each edge starts, shape (count,).
+        end: Place at which each ends, shape (count,).
+        third: Position of the triangle's point across each edge, shape (count, 3) [m].
+        tolerance: Distance up to which those are the same [m].
+    """
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    order = np.lexsort((high, low))
+    low, high = low[order], high[order]
+    begins = np.flatnonzero((np.diff(low, prepend=-1) != 0) | (np.diff(high, prepend=-1) != 0))
+    size = np.diff(np.append(begins, len(order)))
+    one, other = order[begins[size == 2]], order[begins[size == 2] + 1]
+    differ = np.linalg.norm(third[one] - third[other], axis=1) > tolerance
+    chosen = differ & (start[one] == start[other]) & (start[one] != end[one])
+    return one[chosen], other[chosen]
 
 
 def _first_of_groups(pairs: np.ndarray, count: int) -> np.ndarray:
