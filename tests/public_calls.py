@@ -391,8 +391,16 @@ CALLS: dict[str, Call] = {
     ),
     "wrap_cage": Call(
         lambda w: cagecut.wrap_cage,
-        lambda w: {"points": w.surface.points, "triangles": w.surface.triangles, "face_count": 40, "offset": 0.02},
-        {"offset": ("a number",)},
+        lambda w: {
+            "points": w.surface.points,
+            "triangles": w.surface.triangles,
+            "face_count": 40,
+            "offset": 0.02,
+            "separate": False,
+            "polygons": False,
+            "progress": False,
+        },
+        {"offset": ("a number",), "separate": ("True",), "polygons": ("True",), "progress": ("None", "True")},
         {"face_count": ("faces",), "triangles": ("triangle",)},
     ),
     "AnimationWriter": Call(

@@ -9,13 +9,14 @@ import subprocess
 import sys
 
 import newton
+import numpy as np
 import pytest
 import warp as wp
 
 import newton_cagecut as cagecut
 from cage_shapes import hexagonal_prism
 from newton_cagecut import SolverCageCut
-from solver_scenes import make_solver, run
+from solver_scenes import make_solver, run, slanted_blade
 from surface_shapes import sphere
 
 SCENES = {
@@ -180,6 +181,27 @@ def test_nested_walks_left_out_have_no_kernel(launched):
     """A cage of quads evaluates landings by a kernel without walks on faces; one with hexagons does not."""
     quads, hexagons = launched_by(launched), launched_by(launched, cage=True)
     assert not quads["land"] & hexagons["land"]
+
+
+def test_a_fit_left_out_has_no_kernel(launched):
+    """Walked weights compile and launch nothing of boundary fits."""
+    without, with_it = launched_by(launched), launched_by(launched, correction="fitted", quads="harmonic")
+    own = {name for name, modules in with_it.items() if any(".fit." in module for module in modules)}
+    assert own
+    assert not own & set(without)
+
+
+def test_caps_left_out_are_not_made():
+    """A cut through a solid body is closed by triangles; a plane body gets none, and room for none."""
+    caps = {}
+    for dimension in (2, 3):
+        _, solver, *states = make_solver(dimension=dimension, walks=16)
+        solver.advance_cut(solver.begin_cut(0, slanted_blade(dimension)), 10.0, states=states)
+        caps[dimension] = np.count_nonzero(solver.bodies[0].surface.triangle_cap >= 0)
+        entry = next(entry for entry in solver.plan() if entry.feature == "caps")
+        assert (entry.on, entry.byte_count) == (dimension == 3, 0)
+    assert caps[2] == 0
+    assert caps[3] > 0
 
 
 def test_usd_left_out_is_not_imported():
