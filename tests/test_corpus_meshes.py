@@ -79,10 +79,6 @@ CAP = np.arange(8) * np.pi / 4
 PRISM = np.concatenate([[[0.5 + 0.3 * np.cos(a), 0.5 + 0.3 * np.sin(a), z] for a in CAP] for z in (0.3, 0.7)])
 PRISM_SIDES = [(k, (k + 1) % 8, (k + 1) % 8 + 8, k + 8) for k in range(8)]
 PRISM_FACES = [tuple(range(8))[::-1], tuple(range(8, 16)), *PRISM_SIDES]
-    tuple(range(8))[::-1],
-    tuple(range(8, 16)),
-    *((k, (k + 1) % 8, (k + 1) % 8 + 8, k + 8) for k in range(8)),
-]
 SPLIT = CUBE[TRIANGLES.reshape(-1)], np.arange(36).reshape(-1, 3)
 
 KINDS = {
