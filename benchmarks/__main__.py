@@ -24,6 +24,7 @@ NAMES = (
     "solve",
     "table1",
     "topology",
+    "wrap",
 )
 
 

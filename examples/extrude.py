@@ -3,7 +3,7 @@
 """A sprout grows: its cage is extruded while it sways, and walks go on from where they had landed.
 
 Coordinates alone, without a solver: the top face of the cage is extruded to begin a new joint, then moved on a little
-every frame. Points that the growth leaves alone keep their walks; those of the tip are set anew.
+at a time. Points that the growth leaves alone keep their walks; those of the tip are set anew.
 
 Success criteria: four joints; at rest the weights give every point back.
 """
@@ -20,7 +20,7 @@ from .base import Camera, Scene, box_cage, require
 
 WIDTH, FIRST, JOINT, JOINTS = 0.34, 0.2, 0.18, 4  # of the cage and its joints [m]
 RING_COUNT, RING_SIZE, RADIUS = 30, 24, 0.112  # of the sprout
-FRAMES_A_JOINT = 24
+FRAMES_A_JOINT, FRAMES_A_STEP = 24, 4  # walks can tell 31 extensions of a cage apart
 SWAY, TWIST = 0.55, 1.6  # of the tip [m/m^2] and [rad/m]
 
 
@@ -58,10 +58,10 @@ class Example(Scene):
 
     def advance(self) -> None:
         joint, frame = divmod(self.frame, FRAMES_A_JOINT)
-        if joint >= JOINTS:
+        if joint >= JOINTS or frame % FRAMES_A_STEP:
             return
         top = max(range(self.cage.face_count), key=lambda f: self.cage.vertices[list(self.cage.faces[f]), 2].min())
-        step = JOINT / FRAMES_A_JOINT
+        step = JOINT * FRAMES_A_STEP / FRAMES_A_JOINT
         edit = self.cage.extrude(top, step) if frame == 0 else self.cage.move_face(top, step)
         self.coords.update(edit)
         self.cage, self.height = edit.cage, self.height + step

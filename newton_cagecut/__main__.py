@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 _COMMANDS = {
     "cage": ("wrap.cage_command", "make a coarse cage around a mesh"),
+    "wrap": ("wrap.cage_command", "the same as cage"),
     "validate": ("usd.validate_command", "check USD files at every sample"),
     "report": ("report.report_command", "measure error against run time, and write a page"),
     "plan": ("report.plan_command", "list what a scene needs, and what it leaves out"),

@@ -9,20 +9,21 @@ import subprocess
 import sys
 
 import newton
+import numpy as np
 import pytest
 import warp as wp
 
 import newton_cagecut as cagecut
 from cage_shapes import hexagonal_prism
 from newton_cagecut import SolverCageCut
-from solver_scenes import make_solver, run
+from solver_scenes import make_solver, run, slanted_blade
 from surface_shapes import sphere
 
 SCENES = {
     "plain": {},
     "contact": {"contact_radius": 0.01},
     "not cuttable": {"cuttable": False},
-    "keyframed": {"cuttable": False, "quadrature": 0, "contact_radius": 0.01},
+    "keyframed": {"cuttable": False, "quadrature": 0},
     "plane": {"dimension": 2},
     "fitted": {"correction": "fitted", "walks": 0},
 }
@@ -76,10 +77,10 @@ def test_room_for_cuts_is_what_a_cut_may_use():
 
 
 def test_reasons_are_true():
-    """A contact radius on a keyframed body is not denied."""
-    plan = {entry.feature: entry for entry in make_solver(**SCENES["keyframed"], walks=16)[1].plan()}
-    assert not plan["contact"].on
-    assert plan["contact"].reason.startswith("contact_radius was given, but with quadrature=0")
+    """Contact is there with a contact radius, and only then."""
+    plan = {entry.feature: entry for entry in make_solver(**SCENES["contact"], walks=16)[1].plan()}
+    assert plan["contact"].on
+    assert plan["contact"].reason == "contact_radius was given"
     plan = {entry.feature: entry for entry in make_solver(walks=16)[1].plan()}
     assert plan["contact"].reason == "no contact_radius"
 
@@ -135,19 +136,19 @@ def test_contact_left_out_is_never_run(launched):
     """Without a contact radius no kernel of contact is compiled or launched; with one they are."""
     without, with_it = launched_by(launched), launched_by(launched, contact_radius=0.01)
     own = {name for name, modules in with_it.items() if any("contact_kernels" in module for module in modules)}
-    assert {"collect_contacts", "list_touching"} <= own
+    assert {"begin_contacts", "place_forces"} <= own
     assert not own & set(without)
 
 
 def test_elasticity_left_out_is_never_run(launched):
-    """A keyframed body compiles and launches nothing of the elastic room, contact radius or not."""
+    """A keyframed body compiles and launches nothing of the elastic room, nor of contact."""
     without = launched_by(launched, **SCENES["keyframed"])
     with_it = launched_by(launched)
     elastic = {name for name, modules in with_it.items() if any(".elastic." in module for module in modules)}
     elastic |= {"strain", "elastic_energy", "begin_solve"}
     assert len(elastic) > 8
     assert not elastic & set(without)
-    assert not {"collect_contacts", "list_touching"} & set(without)
+    assert not {"begin_contacts", "place_forces"} & set(without)
 
 
 def test_a_plane_body_runs_nothing_in_space(launched):
@@ -180,6 +181,27 @@ def test_nested_walks_left_out_have_no_kernel(launched):
     """A cage of quads evaluates landings by a kernel without walks on faces; one with hexagons does not."""
     quads, hexagons = launched_by(launched), launched_by(launched, cage=True)
     assert not quads["land"] & hexagons["land"]
+
+
+def test_a_fit_left_out_has_no_kernel(launched):
+    """Walked weights compile and launch nothing of boundary fits."""
+    without, with_it = launched_by(launched), launched_by(launched, correction="fitted", quads="harmonic")
+    own = {name for name, modules in with_it.items() if any(".fit." in module for module in modules)}
+    assert own
+    assert not own & set(without)
+
+
+def test_caps_left_out_are_not_made():
+    """A cut through a solid body is closed by triangles; a plane body gets none, and room for none."""
+    caps = {}
+    for dimension in (2, 3):
+        _, solver, *states = make_solver(dimension=dimension, walks=16)
+        solver.advance_cut(solver.begin_cut(0, slanted_blade(dimension)), 10.0, states=states)
+        caps[dimension] = np.count_nonzero(solver.bodies[0].surface.triangle_cap >= 0)
+        entry = next(entry for entry in solver.plan() if entry.feature == "caps")
+        assert (entry.on, entry.byte_count) == (dimension == 3, 0)
+    assert caps[2] == 0
+    assert caps[3] > 0
 
 
 def test_usd_left_out_is_not_imported():

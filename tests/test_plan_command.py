@@ -17,7 +17,7 @@ from newton_cagecut.report.stability.shapes import bar, surface_in
 
 def build(builder):
     cage = bar(1, (1.0, 0.5, 0.5)).cage()
-    for label, options in (("cut", {}), ("still", {"cuttable": False, "quadrature": 0, "contact_radius": 0.01})):
+    for label, options in (("cut", {}), ("still", {"cuttable": False, "quadrature": 0})):
         cagecut.add_cage_body(builder, cage, surface_in(cage), walks=8, label=label, **{"quadrature": 20, **options})
 """
 
@@ -31,7 +31,7 @@ def test_a_scenes_plan_is_printed(tmp_path, capsys):
     cut, still = (re.search(rf"^{label}\n((?:  .*\n)*)", text, re.MULTILINE)[1] for label in ("cut", "still"))
     assert re.search(r"walk cache +\d.* kB +the body can be cut", cut)
     assert re.search(r"walk cache +left out +cuttable=False", still)
-    assert "left out  contact_radius was given, but with quadrature=0" in still
+    assert "left out  no contact_radius" in still
     assert re.search(r"MB on cpu for 2 bodies, of which .* is room for cuts", text)
     assert re.search(r"^\d+ kernels were loaded", text, re.MULTILINE)
     assert "  harmonic.walks.walk: walk_on_spheres\n" in text

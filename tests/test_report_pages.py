@@ -58,7 +58,7 @@ def test_plots_are_drawn_from_the_figures(most, report, tmp_path):
 def test_report_is_of_all_scenes(report):
     """The six scenes, the bunny and the gingerbread man have errors, references and updates; it is not large."""
     records = records_of(report)
-    for row in ("reference", "error", "elements", "epsilon", "table1"):
+    for row in ("reference", "error", "elements", "epsilon", "table1", "replay", "locality", "course"):
         assert {record.scene for record in records if record.row == row} >= SCENES, row
     assert sum(path.stat().st_size for path in REPORT.iterdir()) < MOST_BYTES
 

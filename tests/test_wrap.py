@@ -10,11 +10,13 @@ from pathlib import Path
 import newton.examples
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 import newton_cagecut as cagecut
 from newton_cagecut.cage import Cage, mesh_clearance
 from newton_cagecut.usd import read_mesh
 from newton_cagecut.wrap import wrap
+from newton_cagecut.wrap.inequalities import Inequalities
 from surface_shapes import icosphere, torus
 from wrap_shapes import CUBE, CUBE_TRIANGLES, independent_gap, open_bowl, sheet, two_balls
 
@@ -194,3 +196,57 @@ def test_the_missing_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "pymeshlab", None)
     with pytest.raises(ImportError, match=r"pip install 'newton_cagecut\[wrap\]'"):
         cagecut.wrap_cage(CUBE, CUBE_TRIANGLES)
+
+
+def test_components_are_kept_apart_where_that_is_asked():
+    """Two balls 0.3 m apart get one piece of the cage, or one each; a ball in a ball shares its cage."""
+    mesh = two_balls(2.3)
+    assert cagecut.wrap_cage(*mesh, 24).component_count == 1
+    cage = cagecut.wrap_cage(*mesh, 24, separate=True)
+    check_holds(cage, mesh, 24)
+    assert (cage.component_count, cage.piece_count) == (2, 2)
+    points, triangles = icosphere(1)
+    nested = np.concatenate([points, 0.3 * points]), np.concatenate([triangles, triangles + len(points)])
+    assert cagecut.wrap_cage(*nested, 12, separate=True).component_count == 1
+
+
+def test_components_that_cannot_be_apart_are_named():
+    """Too near, or too many for the faces: the text has the distance, and what to do."""
+    with pytest.raises(ValueError, match=r"points 0 and 162 of the mesh come within 0\.0\d+ m .* smaller offset"):
+        cagecut.wrap_cage(*two_balls(2.05), 24, separate=True)
+    with pytest.raises(ValueError, match="ask for at least 8 faces"):
+        cagecut.wrap_cage(*two_balls(4.0), 6, separate=True)
+
+
+def test_planar_regions_become_polygons():
+    """A cube has faces of more than three sides, fewer than its triangles, in a cage that holds it."""
+    cage = cagecut.wrap_cage(CUBE, CUBE_TRIANGLES, 12, polygons=True)
+    check_holds(cage, (CUBE, CUBE_TRIANGLES), 12)
+    assert cage.face_count < 12
+    assert max(map(len, cage.faces)) > 3
+    ball = icosphere(2)
+    plain, flat = (cagecut.wrap_cage(*ball, 30, polygons=polygons) for polygons in (False, True))
+    check_holds(flat, ball, 30)
+    assert flat.face_count < plain.face_count
+    assert flat.volume < 1.3 * plain.volume
+
+
+def test_rows_that_bind_are_enough():
+    """The program solved with few rows at a time has the optimum of all of them."""
+    rng = np.random.default_rng(3)
+    rows = Inequalities(6)
+    directions = rng.normal(size=(4000, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    vertices, weights = rng.integers(0, 6, size=(4000, 2)), rng.uniform(-1.0, 1.0, size=(4000, 2))
+    bounds = rng.uniform(-0.5, 0.05, size=4000)
+    rows.require(vertices, weights, directions, bounds, soft=True)
+    cost = rng.normal(size=(6, 3))
+    moves, shortfall = rows.least(cost, 0.3)
+    matrix = np.zeros((4000, 19))
+    for k in range(2):
+        for axis in range(3):
+            np.add.at(matrix, (np.arange(4000), 3 * vertices[:, k] + axis), weights[:, k] * directions[:, axis])
+    matrix[:, 18] = 1.0
+    limits = [(-0.3, 0.3)] * 18 + [(0.0, None)]
+    every = linprog(np.append(cost, 100.0), A_ub=-matrix, b_ub=-bounds, bounds=limits, method="highs")
+    assert (cost * moves).sum() + 100.0 * shortfall == pytest.approx(every.fun, abs=1e-7)

@@ -110,7 +110,11 @@ VELOCITY_KEPT, VELOCITY_REACHED = wp.constant(11), wp.constant(12)
 """Factors of the stage's target and of its velocity; see ``stages/scheme.py``."""
 TOUCHED = wp.constant(13)
 """Number of points that further forces act on in the step."""
-SCALE_COUNT = 14
+END_TIME, IMPULSE_SHARE = wp.constant(14), wp.constant(15)
+"""When the stage ends, counted from the start of the step, and how long a force at its end acts in the step [s]."""
+JOINED = wp.constant(16)
+"""Whether pieces push each other, so that none chooses alone how much of a solution it takes."""
+SCALE_COUNT = 17
 
 
 @wp.struct

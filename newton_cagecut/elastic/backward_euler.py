@@ -26,6 +26,7 @@ class BackwardEuler(ImplicitIntegrator):
     def __init__(self, body: BodyArrays, model: str, *, limits: SolveLimits, record: StepRecord) -> None:
         super().__init__(body, model, limits=limits, record=record)
         self._add_point_residual = self.solver.adding_residual(self.arrays.predicted, self._no_forces)
+        self._add_point_impulse = self.solver.adding_impulse(self.arrays.displacement, self.arrays.predicted)
         self._find_rates = self._per_point(limit.find_rates, [self.arrays])
         self._find_limit = block_later(limit.find_limit, [body, self.arrays, record], self.device)
 
@@ -59,6 +60,8 @@ class BackwardEuler(ImplicitIntegrator):
         self._find_rates.launch()
         self._find_limit.launch()
         self._launch(limit.finish_step, [*before, body, step, *after])
+        if points is not None:
+            self._add_point_impulse(points)
         if self.is_plane:
             self._launch(plane_confinement.confine_end, [body, *after])
         self._end_record.launch()

@@ -68,7 +68,7 @@ def finish_step(
     positions_out: wp.array[wp.vec3],
     velocities_out: wp.array[wp.vec3],
 ):
-    """New velocities and positions; spare vertices are copied."""
+    """New velocities and positions, and what further terms see of them; spare vertices are copied."""
     i = wp.tid()
     velocity = velocities[i]
     position = positions[i]
@@ -82,3 +82,5 @@ def finish_step(
         position += float(step.scales[TIME_STEP]) * velocity
     velocities_out[i] = velocity
     positions_out[i] = position
+    step.predicted[i] = velocity
+    step.displacement[i] = float(step.scales[TIME_STEP]) * velocity

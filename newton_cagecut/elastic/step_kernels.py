@@ -18,7 +18,9 @@ from .arrays import (
     DAMPING,
     ELASTIC_FORCE,
     ELASTIC_STIFFNESS,
+    END_TIME,
     FORCE,
+    IMPULSE_SHARE,
     STIFFNESS,
     TIME_STEP,
     BodyArrays,
@@ -85,6 +87,8 @@ def begin_step(
         step.scales[ELASTIC_FORCE] = seconds
         step.scales[ELASTIC_STIFFNESS] = seconds * (seconds + body.material[0][2])
         step.scales[TIME_STEP] = seconds
+        step.scales[END_TIME] = seconds
+        step.scales[IMPULSE_SHARE] = seconds
 
 
 @functools.cache

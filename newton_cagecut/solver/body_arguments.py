@@ -14,10 +14,14 @@ import warp as wp
 
 from ..cage import Cage
 from ..elastic import Material
-from ..geometry import as_index, as_instance, as_length, as_numbers, shown
+from ..geometry import as_flag, as_index, as_instance, as_length, as_number, as_numbers, shown
 from ..harmonic import HarmonicCoordinates, check_options, chosen_walks
 from ..surface import Surface
 from .body.capacity import MOST, Capacity
+from .body.contact_material import ContactMaterial
+
+_FIRMEST = 1.0e15
+"""Greatest value of a contact material."""
 
 
 def as_surface(
@@ -210,26 +214,76 @@ def as_capacity(capacity: Capacity | None, cage: Cage, surface: Surface, *, cutt
     return capacity
 
 
-def as_contact_radius(radius: float | None, cage: Cage) -> float | None:
+def as_contact_radius(radius: float | None, cage: Cage, quadrature: int | None) -> float | None:
     """A radius of surface points [m]; None without contact.
 
     Args:
         radius: What was passed.
         cage: The cage.
+        quadrature: Wanted number of quadrature points.
 
     Raises:
         TypeError: It is not a number.
-        ValueError: It is not positive, or larger than the body.
+        ValueError: It is not positive, or larger than the body, or nothing could push the body.
     """
     if radius is None:
         return None
     radius = as_length(radius, "contact_radius")
+    if quadrature == 0:
+        raise ValueError(
+            "contact_radius was given with quadrature=0: a body without elasticity goes where its vertices are put, "
+            "and nothing can push it; leave out one of the two"
+        )
     if radius > cage.diameter:
         raise ValueError(
             f"contact_radius is that of the surface's points; {radius:g} m is more than the cage's size of "
             f"{cage.diameter:g} m"
         )
     return radius
+
+
+def as_contact_material(radius: float | None, **values: float | None) -> ContactMaterial:
+    """The contact material of a body.
+
+    Args:
+        radius: Its contact radius, as it was passed.
+        values: What was passed for stiffness, damping and friction, by the arguments' names.
+
+    Raises:
+        TypeError: A value is not a number.
+        ValueError: A value is negative or too large, the stiffness is zero, or there is no contact radius.
+    """
+    numbers = {}
+    for name, value in values.items():
+        numbers[name] = None if value is None else as_number(value, name)
+        if value is not None and radius is None:
+            raise ValueError(f"{name} is of no use without contact_radius; give both, or neither")
+        if value is not None and not 0.0 <= numbers[name] <= _FIRMEST:
+            raise ValueError(f"{name} must not be negative, and at most {_FIRMEST:g}; got {numbers[name]:g}")
+    if numbers["contact_stiffness"] == 0.0:
+        raise ValueError("contact_stiffness must be positive; leave contact_radius out for a body without contact")
+    return ContactMaterial(numbers["contact_stiffness"], numbers["contact_damping"], numbers["friction"])
+
+
+def as_touching(radius: float | None, cage: Cage, **flags: bool) -> dict[str, bool]:
+    """What a body touches of itself.
+
+    Args:
+        radius: Its contact radius, as it was passed.
+        cage: Its cage.
+        flags: What was passed, by the arguments' names.
+
+    Raises:
+        TypeError: A value is no flag.
+        ValueError: There is no contact radius, or the body is a plane one.
+    """
+    found = {name: as_flag(flag, name) for name, flag in flags.items()}
+    for name in (name for name, flag in found.items() if flag):
+        if radius is None:
+            raise ValueError(f"{name} needs contact_radius: without, the surface has no particles that could touch")
+        if cage.dimension == 2:
+            raise ValueError(f"{name} is for solid bodies; a plane body touches shapes only")
+    return found
 
 
 def as_thickness(thickness: float | None, cage: Cage, surface: Surface) -> float | None:

@@ -99,6 +99,11 @@ def add_cage_body(
     capacity: Capacity | None = None,
     cuttable: bool = True,
     contact_radius: float | None = None,
+    contact_stiffness: float | None = None,
+    contact_damping: float | None = None,
+    friction: float | None = None,
+    self_contact: bool = False,
+    pieces_touch: bool = False,
     thickness: float | None = None,
     seed: int = 0,
     label: str | None = None,
@@ -130,6 +135,14 @@ def add_cage_body(
         cuttable: Whether the body can be cut. Without, no walk cache is kept. What was done to the mesh for it, and
             where it is open, so that cuts make no caps, is said in a warning: ``surface.notes``.
         contact_radius: Makes the surface points collide as particles of this radius [m]; None for no contact.
+        contact_stiffness: Stiffness of each surface point [N/m], which the mean with the shape's is taken of; None for
+            ``model.soft_contact_ke``.
+        contact_damping: Damping of each surface point [N s/m]; None for ``model.soft_contact_kd``.
+        friction: Coefficient of friction, which the mean with the shape's is taken of; None for
+            ``model.soft_contact_mu``.
+        self_contact: Whether each piece touches itself: the sides of a slit, and where it folds. Of solid bodies with a
+            contact radius; gaps are between the surfaces, without the radius.
+        pieces_touch: Whether pieces that cuts have separated touch each other, likewise.
         thickness: Thickness of a plane body [m], which its mass is proportional to; 1 m by default.
         seed: Seed of walks and quadrature.
         label: Name of the body.
@@ -172,7 +185,11 @@ def add_cage_body(
         quadrature_count=arguments.as_quadrature_count(quadrature, cage.vertex_count),
         cuttable=cuttable,
         capacity=arguments.as_capacity(capacity, cage, surface, cuttable=cuttable),
-        contact_radius=arguments.as_contact_radius(contact_radius, cage),
+        contact_radius=arguments.as_contact_radius(contact_radius, cage, quadrature),
+        contact_material=arguments.as_contact_material(
+            contact_radius, contact_stiffness=contact_stiffness, contact_damping=contact_damping, friction=friction
+        ),
+        **arguments.as_touching(contact_radius, cage, self_contact=self_contact, pieces_touch=pieces_touch),
         thickness=thickness,
         options=options,
     )

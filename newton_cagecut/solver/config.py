@@ -12,6 +12,7 @@ from ..geometry import as_choice, as_index, as_number
 from .live.foreign_rows import FOREIGN_ROWS
 
 _MOST_ITERATIONS = 1 << 30
+_CONTACTS = ("penalty", "firm")
 
 STRAINS = ("points", "averaged")
 """Where strain can be taken."""
@@ -44,6 +45,11 @@ class Config:
     """What a step does with rows of ``state_out`` that are not of cage bodies, such as rigid bodies and particles:
     ``"copy"`` them from ``state_in``, or ``"keep"`` those that another solver has written before."""
 
+    contact: str = "penalty"
+    """How shapes push: ``"penalty"``, with the stiffness that body and shape have; or ``"firm"``, as much stiffer in an
+    impact as stops it within the contact radius, from when the gap is closed by the end of the step; give the pipeline
+    ``soft_contact_gap=speed * dt`` to look as far ahead. Firm contacts rub as Coulomb says and hold what rests."""
+
     dense_vertices: int | None = None
     """Most vertices of a cage, when the solver is made, whose solves have a dense factor of the matrix, at least 0;
     larger ones have the inverses of its diagonal blocks. None for what was measured to pay: 110, or 300 for Poisson's
@@ -55,6 +61,7 @@ class Config:
 
     def __post_init__(self) -> None:
         as_choice(self.foreign, tuple(FOREIGN_ROWS), "SolverCageCut foreign")
+        as_choice(self.contact, _CONTACTS, "SolverCageCut contact")
         as_choice(self.integrator, tuple(INTEGRATORS), "SolverCageCut integrator")
         as_choice(self.strain, STRAINS, "SolverCageCut strain")
         iterations = as_index(self.newton_iterations, "SolverCageCut newton_iterations")

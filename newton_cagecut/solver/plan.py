@@ -196,11 +196,7 @@ def _caps_reason(body: SimulatedBody) -> str:
 
 def _contact_reason(body: SimulatedBody) -> str:
     """Why shapes push the body, or do not."""
-    if not body.has_contact:
-        return "no contact_radius"
-    if body.contact is None:
-        return "contact_radius was given, but with quadrature=0 nothing can push the cage"
-    return "contact_radius was given"
+    return "contact_radius was given" if body.has_contact else "no contact_radius"
 
 
 def _room_reason(body: SimulatedBody) -> str:

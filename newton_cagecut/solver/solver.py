@@ -23,6 +23,7 @@ from .body.simulated_body import SimulatedBody
 from .body.step_watch import StepWatch
 from .builder import register_custom_attributes
 from .config import Config
+from .contact.rigid_reactions import RigidReactions
 from .cut.body_cut import BodyCut
 from .cut.body_snapshot import BodySnapshot
 from .cut.cut_report import CutReport
@@ -101,6 +102,7 @@ class SolverCageCut(LiveSolver):
         self._viewer = SurfaceViewer()
         self._recorder: SceneRecorder | None = None
         labels, systems = zip(*((body.label, body.system) for body in self._simulated), strict=True)
+        self._reactions = RigidReactions(model, self._simulated)
         self._arguments = StepArguments(model, self._stamps)
         self._watch = StepWatch(labels, systems, model.device)
 
@@ -152,6 +154,10 @@ class SolverCageCut(LiveSolver):
     ) -> None:
         """Advance all cage bodies by one step; what is not theirs is copied through, see ``Config.foreign``.
 
+        Contacts push both ways: what they do to rigid bodies is added to ``state_in.body_f``, about the centres of
+        mass, for the solver that steps those from ``state_in`` afterwards. ``state_in.particle_f`` acts on cage
+        vertices and, of bodies with a contact radius, on surface points.
+
         A body whose rows of ``state_in`` missed an edit is left where it is there, and counted: in a replay of a
         captured graph nothing else can be done. Outside of a capture that raises, then or at the next call.
 
@@ -182,8 +188,10 @@ class SolverCageCut(LiveSolver):
         if state_in is not state_out:
             self._foreign.copy(state_in, state_out)
             wp.copy(state_edits(state_out), state_edits(state_in))
+        self._reactions.collect(state_in, contacts, seconds)
         for body in self._simulated:
-            body.step(state_in, state_out, contacts, seconds, targets)
+            body.step(state_in, state_out, seconds, targets)
+        self._reactions.react(state_in, seconds)
         self._watch.note()
 
     def warm_up(self, *, progress: bool | None = None) -> None:

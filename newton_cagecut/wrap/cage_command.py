@@ -56,6 +56,12 @@ def add_options(parser: ArgumentParser) -> None:
         default=0.01,
         help="least distance between mesh and cage, of the diagonal of the mesh's box (0.01)",
     )
+    parser.add_argument(
+        "--separate", action="store_true", help="give each connected component of the mesh a piece of the cage"
+    )
+    parser.add_argument(
+        "--polygons", action="store_true", help="join triangles that lie nearly in a plane into polygons"
+    )
     parser.add_argument("--prim", metavar="PATH", help="the mesh to take from a USD file with several")
     parser.add_argument(
         "--up-axis", choices=("Y", "Z"), help="turn the mesh so that this axis is up; the file's own without it"
@@ -79,7 +85,9 @@ def run(options: Namespace) -> None:
     mesh = read_any_mesh(options.mesh, options.prim, up_axis=options.up_axis)
     start = perf_counter()
     surface = Surface(mesh.points, mesh.triangles)
-    cage = _as_stored(wrap_cage(surface.points, surface.triangles, options.faces, offset=options.offset), surface)
+    choices = {"separate": options.separate, "polygons": options.polygons}
+    cage = wrap_cage(surface.points, surface.triangles, options.faces, offset=options.offset, **choices)
+    cage = _as_stored(cage, surface)
     seconds = perf_counter() - start
     write_cage(output, cage, up_axis=mesh.up_axis)
     print(f"{output}: {report(cage, surface)}\n  made in    {seconds:.1f} s")

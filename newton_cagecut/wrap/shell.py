@@ -8,6 +8,7 @@ the moves of the other. Lengths are in units of the mesh's size.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -60,6 +61,11 @@ class Shell:
     def volume(self) -> float:
         """Enclosed volume."""
         return float(np.linalg.det(self.corners).sum() / 6.0)
+
+    @property
+    def area(self) -> float:
+        """Area of the triangles."""
+        return 0.5 * float(np.linalg.norm(triangle_normals(self.corners), axis=1).sum())
 
     @property
     def volume_growth(self) -> np.ndarray:
@@ -153,6 +159,39 @@ def keep_shape(rows: Inequalities, shell: Shell, height: float) -> None:
         present = np.linalg.norm(upright, axis=1)
         weights = np.stack([np.ones_like(along), along - 1.0, -along], axis=1)
         rows.require(vertices, weights, units(upright, present), _allowed_loss(height, present), soft=False)
+
+
+def keep_flat(rows: Inequalities, shell: Shell, panels: Sequence[np.ndarray]) -> None:
+    """Ask that the vertices of panels come into a plane each.
+
+    Args:
+        rows: Takes the inequalities.
+        shell: The shell.
+        panels: Triangle ids of each panel.
+    """
+    for panel in panels:
+        vertices, weights, normal, missing = flatness(shell, panel)
+        for sign in (1.0, -1.0):
+            ids, directions = np.tile(vertices, (len(weights), 1)), np.tile(normal, (len(weights), 1))
+            rows.require(ids, sign * weights, directions, sign * missing, soft=True)
+
+
+def flatness(shell: Shell, panel: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return what makes a panel flat: to first order, weighted sums of its vertices' moves along its normal.
+
+    Args:
+        shell: The shell.
+        panel: Triangle ids.
+
+    Returns:
+        The k vertices, weights of shape (k - 3, k), the normal and what the sums must be, shape (k - 3,).
+    """
+    vertices = np.unique(shell.triangles[panel])
+    places = shell.vertices[vertices] - shell.vertices[vertices].mean(axis=0)
+    x, y, normal = np.linalg.svd(places)[2]
+    plane = np.stack([np.ones(len(places)), places @ x, places @ y])
+    weights = np.linalg.svd(plane)[2][3:]
+    return vertices, weights, normal, -weights @ (places @ normal)
 
 
 def _vertex_gaps(shell: Shell) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

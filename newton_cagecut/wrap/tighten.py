@@ -10,11 +10,13 @@ can. Lengths are in units of the mesh's size.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 from scipy.spatial import cKDTree
 
 from .inequalities import Inequalities
-from .shell import Shell, keep_apart, keep_around, keep_off, keep_shape
+from .shell import Shell, keep_apart, keep_around, keep_flat, keep_off, keep_shape
 
 _FIRST_STEP = 0.23  # longest move along an axis, of the root of one over the number of triangles
 _DECAY = 0.85  # of the step, each time
@@ -25,7 +27,16 @@ _HEIGHT = 0.25  # least height of a triangle, of the root of one over their numb
 _SETTLED = 1e-3  # change of the volume that ends it
 
 
-def tighten(shell: Shell, points: np.ndarray, skin: cKDTree, *, margin: float, spacing: float) -> Shell:
+def tighten(
+    shell: Shell,
+    points: np.ndarray,
+    skin: cKDTree,
+    *,
+    margin: float,
+    spacing: float,
+    panels: Sequence[np.ndarray] = (),
+    tick: Callable[[], None] = lambda: None,
+) -> Shell:
     """Return the shell around a mesh that comes out of the moves.
 
     Args:
@@ -34,6 +45,8 @@ def tighten(shell: Shell, points: np.ndarray, skin: cKDTree, *, margin: float, s
         skin: Points spread over the mesh.
         margin: Distance that the faces must keep from the skin.
         spacing: Distance between the points of the faces that are compared with the skin.
+        panels: Triangle ids of each panel that is to become flat.
+        tick: Called before each step.
 
     Returns:
         The shell. It may leave points out, or meet itself, where small steps lead to none that does not.
@@ -41,11 +54,13 @@ def tighten(shell: Shell, points: np.ndarray, skin: cKDTree, *, margin: float, s
     size = 1.0 / np.sqrt(len(shell.triangles))
     step, height, volume = _FIRST_STEP * size, _HEIGHT * size, np.inf
     for count in range(_STEPS):
+        tick()
         rows, reach = Inequalities(len(shell.vertices)), np.sqrt(3.0) * step
         keep_around(rows, shell, points, reach)
         keep_off(rows, shell, skin, margin, spacing, reach)
         keep_apart(rows, shell, _GAP, reach)
         keep_shape(rows, shell, height)
+        keep_flat(rows, shell, panels)
         moves, shortfall = rows.least(shell.volume_growth, step)
         shell = shell.moved(moves)
         settled = shortfall == 0.0 and abs(shell.volume - volume) < _SETTLED * shell.volume

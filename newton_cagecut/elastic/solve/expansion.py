@@ -10,7 +10,7 @@ import warp as wp
 from ..arrays import ELASTIC_STIFFNESS, BodyArrays, LinearSystem, StepArrays
 from ..stiffness import Stiffness
 from .lanes import entry, lane_struct, lane_type, make_lane_sum
-from .point_forces import PointForces, unpacked
+from .point_forces import PointForces, slot_weight, unpacked
 
 wp.set_module_options({"enable_backward": False})
 
@@ -75,7 +75,7 @@ def make_block_kernel(width: int) -> wp.Kernel:
                             total += wp.cw_mul(lanes.stiffness[entry(3 * a + c, 3 * b + d), k], gradient)
                 block[a, b] = block[a, b] + lane_sum(total)
         for slot in range(points.count[0]):
-            weight = points.weights[points.first_row + points.touched[slot], i]
+            weight = slot_weight(slot, i, points)
             block += (weight * weight) * unpacked(points.system[slot])
         system.blocks[i] = block
 

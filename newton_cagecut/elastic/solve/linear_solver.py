@@ -17,7 +17,7 @@ from .cholesky import make_factor_kernel
 from .conjugate_gradient import make_search, make_solve_kernel
 from .expansion import expand_stiffness, make_block_kernel
 from .point_forces import PointForces, make_point_forces
-from .point_kernels import add_point_product, add_point_residual
+from .point_kernels import add_point_impulse, add_point_product, add_point_residual
 from .stiffness_matrix import ROWS, add_points, make_assembly_kernel, make_column_kernel, make_dense_matrix
 
 _NEARLY_INCOMPRESSIBLE = 0.45
@@ -95,6 +95,15 @@ class LinearSolver:
             product: Where the product is added.
         """
         return self._with_points(add_point_product, lambda points: [values, product, self.system, points])
+
+    def adding_impulse(self, moved: wp.array, velocities: wp.array) -> Callable[[PointForces], None]:
+        """The function that adds what forces on points give to the body to their impulses.
+
+        Args:
+            moved: Displacements since the start of the step, one a vertex [m].
+            velocities: Velocities, one a vertex [m/s].
+        """
+        return self._with_points(add_point_impulse, lambda points: [moved, velocities, self.step, self.system, points])
 
     def _with_points(self, kernel: wp.Kernel, inputs: Callable[[PointForces], list]) -> Callable[[PointForces], None]:
         """The function that launches a kernel of one thread block with forces on points; the launch is kept."""

@@ -3,8 +3,10 @@
 
 """Forces on embedded points, such as contact, as a part of the system that is solved.
 
-A point's force is f - S s - D v, with s its displacement and v its velocity after a step, and f that at the position
-before it. Through the weights it reaches the vertices: w^T f, and w^T S w in the matrix.
+A force is f - S (s - u t) - D (v - u), with s the displacement and v the velocity of its point at the end of a step or
+stage, t the time since the start of the step, u the velocity of what it touches, and f that at the start. Through the
+weights it reaches the vertices: w^T f, and w^T S w in the matrix. What touches itself has rows of its own: the weights
+of one place less those of the other.
 """
 
 import warp as wp
@@ -31,62 +33,90 @@ def unpacked(entries: Symmetric) -> wp.mat33:
 
 @wp.struct
 class PointForces:
-    """Forces on points of a body; those of fixed vertices are left out."""
+    """Forces on points of a body, one a slot; those of fixed vertices are left out."""
 
     weights: wp.array2d[float]
     """Weights, one a row and vertex."""
     first_row: int
     """Row of point 0 in ``weights``."""
+    pair_weights: wp.array2d[float]
+    """Weights of places that touch the body itself, less those of the place touched, one a row and vertex."""
+    pair_count: wp.array[int]
+    """Number of these rows in use, shape (1,)."""
     touched: wp.array[int]
-    """The points that a force acts on."""
+    """The point that a force acts on; or -1 - r for row r of ``pair_weights``."""
     count: wp.array[int]
-    """Number of them, shape (1,)."""
+    """Number of slots in use, shape (1,)."""
     force: wp.array[wp.vec3]
-    """Force at the position before the step, one a point [N]."""
+    """Force at the start of the step [N]."""
     stiffness: wp.array[wp.mat33]
-    """Symmetric stiffness, one a point [N/m]."""
+    """Symmetric stiffness [N/m]."""
     damping: wp.array[wp.mat33]
-    """Symmetric damping, one a point [N s/m]."""
+    """Symmetric damping [N s/m]."""
+    drift: wp.array[wp.vec3]
+    """Velocity of what the point touches [m/s]."""
+    impulse: wp.array[wp.vec3]
+    """What the force gave to the body in the step [N s]."""
     system: wp.array[Symmetric]
-    """Block of the system's matrix, one a touched point."""
+    """Block of the system's matrix."""
     product: wp.array[wp.vec4]
-    """Residual, or the block's product with a direction, one a touched point; the last component is 0."""
+    """Residual, or the block's product with a direction; the last component is 0."""
 
 
-def make_point_forces(weights: wp.array, first_row: int, capacity: int) -> PointForces:
+def make_point_forces(weights: wp.array, first_row: int, capacity: int, *, pairs: int = 0) -> PointForces:
     """Forces on no point yet.
 
     Args:
         weights: Weights, one a row and vertex.
         first_row: Row of point 0.
-        capacity: Number of points.
+        capacity: Number of slots.
+        pairs: Number of rows for what touches the body itself.
     """
     points = PointForces()
     points.weights, points.first_row = weights, first_row
     with wp.ScopedDevice(weights.device):
-        points.touched, points.count = wp.zeros(capacity, dtype=int), wp.zeros(1, dtype=int)
-        points.force = wp.zeros(capacity, dtype=wp.vec3)
+        points.pair_weights = wp.zeros((pairs, weights.shape[1]), dtype=float)
+        points.touched = wp.zeros(capacity, dtype=int)
+        points.count, points.pair_count = (wp.zeros(1, dtype=int) for _ in range(2))
+        points.force, points.drift, points.impulse = (wp.zeros(capacity, dtype=wp.vec3) for _ in range(3))
         points.stiffness, points.damping = (wp.zeros(capacity, dtype=wp.mat33) for _ in range(2))
         points.system, points.product = wp.zeros(capacity, dtype=Symmetric), wp.zeros(capacity, dtype=wp.vec4)
     return points
 
 
 @wp.func
-def point_value(slot: int, values: wp.array[wp.vec4], vertex_count: int, points: PointForces) -> wp.vec3:
-    """A vertex field at a touched point, in four sums that do not wait for each other."""
-    row = points.first_row + points.touched[slot]
+def row_value(row: int, weights: wp.array2d[float], values: wp.array[wp.vec4], vertex_count: int) -> wp.vec3:
+    """The sum of a vertex field with a row of weights, in four sums that do not wait for each other."""
     v0, v1, v2, v3 = wp.vec4(), wp.vec4(), wp.vec4(), wp.vec4()
     fours = vertex_count / 4
     for four in range(fours):
         j = 4 * four
-        v0 += points.weights[row, j] * values[j]
-        v1 += points.weights[row, j + 1] * values[j + 1]
-        v2 += points.weights[row, j + 2] * values[j + 2]
-        v3 += points.weights[row, j + 3] * values[j + 3]
+        v0 += weights[row, j] * values[j]
+        v1 += weights[row, j + 1] * values[j + 1]
+        v2 += weights[row, j + 2] * values[j + 2]
+        v3 += weights[row, j + 3] * values[j + 3]
     for j in range(4 * fours, vertex_count):
-        v0 += points.weights[row, j] * values[j]
+        v0 += weights[row, j] * values[j]
     total = (v0 + v1) + (v2 + v3)
     return wp.vec3(total[0], total[1], total[2])
+
+
+@wp.func
+def point_value(slot: int, values: wp.array[wp.vec4], vertex_count: int, points: PointForces) -> wp.vec3:
+    """A vertex field at the point of a slot, relative to what it touches of the body itself."""
+    touched = points.touched[slot]
+    if touched < 0:
+        return row_value(-1 - touched, points.pair_weights, values, vertex_count)
+    return row_value(points.first_row + touched, points.weights, values, vertex_count)
+
+
+@wp.func
+def slot_weight(slot: int, vertex: int, points: PointForces) -> float:
+    """The weight of a vertex at the point of a slot."""
+    touched = points.touched[slot]
+    if touched < 0:
+        return points.pair_weights[-1 - touched, vertex]
+    return points.weights[points.first_row + touched, vertex]
 
 
 @wp.func
@@ -106,12 +136,11 @@ def pull_back(thread: int, vertex_count: int, points: PointForces, pulled: wp.ar
         second, third, fourth = wp.min(j + 1, last), wp.min(j + 2, last), wp.min(j + 3, last)
         v0, v1, v2, v3 = wp.vec4(), wp.vec4(), wp.vec4(), wp.vec4()
         for slot in range(points.count[0]):
-            row = points.first_row + points.touched[slot]
             pull = points.product[slot]
-            v0 += points.weights[row, j] * pull
-            v1 += points.weights[row, second] * pull
-            v2 += points.weights[row, third] * pull
-            v3 += points.weights[row, fourth] * pull
+            v0 += slot_weight(slot, j, points) * pull
+            v1 += slot_weight(slot, second, points) * pull
+            v2 += slot_weight(slot, third, points) * pull
+            v3 += slot_weight(slot, fourth, points) * pull
         pulled[j] = v0
         pulled[j + 1] = v1
         pulled[j + 2] = v2

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import warp as wp
 
-from ..arrays import DAMPING, FORCE, STIFFNESS, LinearSystem, StepArrays
+from ..arrays import DAMPING, END_TIME, FORCE, IMPULSE_SHARE, JOINED, STIFFNESS, LinearSystem, StepArrays
 from .cholesky import wait
 from .conjugate_gradient import Search
 from .point_forces import PointForces, as_four, as_three, multiply_points, packed, point_value, pull_back
@@ -47,10 +47,13 @@ def add_point_residual(
     wait()
     force_scale = float(step.scales[FORCE])
     stiffness_scale, damping_scale = float(step.scales[STIFFNESS]), float(step.scales[DAMPING])
+    if thread == 0 and points.pair_count[0] > 0:
+        step.scales[JOINED] = wp.float64(1.0)
+    time = float(step.scales[END_TIME])
     for slot in range(thread, points.count[0], wp.block_dim()):
-        i = points.touched[slot]
-        block = stiffness_scale * points.stiffness[i] + damping_scale * points.damping[i]
-        force = points.force[i] + points.damping[i] * point_value(slot, search.pulled, count, points)
+        block = stiffness_scale * points.stiffness[slot] + damping_scale * points.damping[slot]
+        passing = points.damping[slot] * (points.drift[slot] + point_value(slot, search.pulled, count, points))
+        force = points.force[slot] + time * (points.stiffness[slot] * points.drift[slot]) + passing
         points.system[slot] = packed(block)
         pull = force_scale * force - block * point_value(slot, search.fours, count, points)
         points.product[slot] = as_four(pull)
@@ -78,3 +81,27 @@ def add_point_product(
     pull_back(thread, count, points, search.pulled)
     wait()
     add_pulled(thread, count, system, search.pulled, product)
+
+
+@wp.kernel(enable_backward=False)
+def add_point_impulse(
+    moved: wp.array[wp.vec3],
+    velocities: wp.array[wp.vec3],
+    step: StepArrays,
+    system: LinearSystem,
+    points: PointForces,
+    search: Search,
+):
+    """Add what the forces at the end of a stage give to the body to the impulses of the step; one thread block."""
+    thread = wp.tid()
+    count = system.row_count[0]
+    spread(thread, count, moved, search.fours)
+    spread(thread, count, velocities, search.pulled)
+    wait()
+    share, time = float(step.scales[IMPULSE_SHARE]), float(step.scales[END_TIME])
+    for slot in range(thread, points.count[0], wp.block_dim()):
+        drift = points.drift[slot]
+        shift = point_value(slot, search.fours, count, points) - time * drift
+        relative = point_value(slot, search.pulled, count, points) - drift
+        force = points.force[slot] - points.stiffness[slot] * shift - points.damping[slot] * relative
+        points.impulse[slot] = points.impulse[slot] + share * force

@@ -13,7 +13,7 @@ import warp as wp
 
 from ..arrays import ELASTIC_STIFFNESS, BodyArrays, StepArrays
 from .lanes import lane_type
-from .point_forces import PointForces, Symmetric, unpacked
+from .point_forces import PointForces, Symmetric, slot_weight, unpacked
 
 wp.set_module_options({"enable_backward": False})
 
@@ -152,18 +152,17 @@ def add_points(body: BodyArrays, points: PointForces, matrix: DenseMatrix):
     j1, j2, j3, j4 = wp.min(j + 1, last), wp.min(j + 2, last), wp.min(j + 3, last), wp.min(j + 4, last)
     j5, j6, j7 = wp.min(j + 5, last), wp.min(j + 6, last), wp.min(j + 7, last)
     for slot in range(points.count[0]):
-        row = points.first_row + points.touched[slot]
-        own = points.weights[row, i]
+        own = slot_weight(slot, i, points)
         if own != 0.0:
             S = own * points.system[slot]
-            b0 += points.weights[row, j] * S
-            b1 += points.weights[row, j1] * S
-            b2 += points.weights[row, j2] * S
-            b3 += points.weights[row, j3] * S
-            b4 += points.weights[row, j4] * S
-            b5 += points.weights[row, j5] * S
-            b6 += points.weights[row, j6] * S
-            b7 += points.weights[row, j7] * S
+            b0 += slot_weight(slot, j, points) * S
+            b1 += slot_weight(slot, j1, points) * S
+            b2 += slot_weight(slot, j2, points) * S
+            b3 += slot_weight(slot, j3, points) * S
+            b4 += slot_weight(slot, j4, points) * S
+            b5 += slot_weight(slot, j5, points) * S
+            b6 += slot_weight(slot, j6, points) * S
+            b7 += slot_weight(slot, j7, points) * S
     add_block(i, j, b0, body, matrix)
     add_block(i, j + 1, b1, body, matrix)
     add_block(i, j + 2, b2, body, matrix)

@@ -5,7 +5,8 @@
 
 The potential of a stage is |x - target|_M^2 / 2 - impulse . x + k^2 Psi(x), with damping, ties and further terms, which
 are quadratic. The solution goes downhill, since its matrix is positive definite; the largest of a row of halvings is
-taken at which the potential is no higher than at the start, up to rounding. Each piece of a body chooses alone.
+taken at which the potential is no higher than at the start, up to rounding. Each piece of a body chooses alone, unless
+pieces push each other: then all take the same part.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import warp as wp
 
-from ..arrays import DAMPING_SHARE, ELASTIC_FORCE, BodyArrays, LinearSystem, StepArrays, matrix_of
+from ..arrays import DAMPING_SHARE, ELASTIC_FORCE, JOINED, BodyArrays, LinearSystem, StepArrays, matrix_of
 from ..averaging.row_functions import make_row_energy
 from ..launching import launch_later
 from ..step_kernels import make_deformation_function
@@ -99,6 +100,7 @@ def make_energy_kernel(model: str, plane: bool, whole: bool) -> wp.Kernel:
 @wp.kernel(enable_backward=False)
 def choose_whole(
     body: BodyArrays,
+    step: StepArrays,
     stage: StageArrays,
     pieces: PieceArrays,
     system: LinearSystem,
@@ -109,15 +111,16 @@ def choose_whole(
     if p >= body.piece_count[0]:
         return
     slope, curvature, size = wp.float64(0.0), wp.float64(0.0), wp.float64(0.0)
+    joined = step.scales[JOINED] > wp.float64(0.0)
     for i in range(body.vertex_count[0]):
-        if body.piece[i] == p and body.fixed[i] == 0:
+        if (joined or body.piece[i] == p) and body.fixed[i] == 0:
             change = wp.vec3d(system.solution[i])
             slope -= wp.dot(change, wp.vec3d(system.kept[i]))
             curvature += wp.dot(change, wp.vec3d(stage.product[i]))
             size += wp.abs(wp.dot(change, wp.vec3d(system.kept[i])))
     rise = slope + wp.float64(0.5) * curvature
     for q in range(search.energies.shape[0]):
-        if body.piece[body.anchors[q]] == p:
+        if joined or body.piece[body.anchors[q]] == p:
             size += search.energies[q, wp.static(HALVINGS)]
             rise += search.energies[q, 0]
     search.terms[p] = wp.vec3d(slope, curvature, size)
@@ -129,7 +132,7 @@ def choose_whole(
 
 
 @wp.kernel(enable_backward=False)
-def choose_part(body: BodyArrays, pieces: PieceArrays, search: LineSearchArrays, record: StepRecord):
+def choose_part(body: BodyArrays, step: StepArrays, pieces: PieceArrays, search: LineSearchArrays, record: StepRecord):
     """Choose the part of the solution that the other pieces take."""
     p = wp.tid()
     if search.halving[0] == 0 or p >= body.piece_count[0] or pieces.factor[p] > wp.float64(0.0):
@@ -140,7 +143,7 @@ def choose_part(body: BodyArrays, pieces: PieceArrays, search: LineSearchArrays,
         if factor == wp.float64(0.0):
             rise = part * terms[0] + wp.float64(0.5) * part * part * terms[1]
             for q in range(search.energies.shape[0]):
-                if body.piece[body.anchors[q]] == p:
+                if step.scales[JOINED] > wp.float64(0.0) or body.piece[body.anchors[q]] == p:
                     rise += search.energies[q, m]
             if rise <= part * _ROUNDING * terms[2]:
                 factor = part
@@ -167,7 +170,7 @@ class LineSearch:
         search.terms = wp.zeros(capacity, dtype=wp.vec3d, device=device)
         search.halving = wp.zeros(1, dtype=int, device=device)
         whole, parts = (make_energy_kernel(model, integrator.is_plane, flag) for flag in (True, False))
-        choosing = [body, stage, pieces, system, search]
+        choosing = [body, step, stage, pieces, system, search]
         self._launches = (
             integrator.solver.gathering(step.displacement, step.strain),
             integrator.solver.gathering(step.predicted, step.drift),
@@ -175,7 +178,7 @@ class LineSearch:
             launch_later(whole, points, [body, step, search], device),
             launch_later(choose_whole, capacity, choosing, device),
             launch_later(parts, points, [body, step, search], device),
-            launch_later(choose_part, capacity, [body, pieces, search, integrator.record], device),
+            launch_later(choose_part, capacity, [body, step, pieces, search, integrator.record], device),
         )
 
     def launch(self) -> None:

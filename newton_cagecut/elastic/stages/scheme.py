@@ -84,3 +84,34 @@ SCHEMES = {
     "backward_euler": Scheme(BACKWARD_EULER_STEP, BACKWARD_EULER_STEP),
 }
 """The stages by the integrator's name."""
+
+
+class StageCourse(NamedTuple):
+    """What follows for a stage from all of its scheme, for a time step of 1 s."""
+
+    end_time: float
+    """When it ends, counted from the start of the step [s]."""
+    impulse_share: float
+    """How long a force at its end acts in the step: its share in the velocity at the end of the step [s]."""
+
+
+def courses_of(scheme: tuple[Stage, ...]) -> tuple[StageCourse, ...]:
+    """The courses of a scheme's stages: where free flight at 1 m/s is, and what a force in one stage does to a mass."""
+    courses = []
+    for stage in range(len(scheme)):
+        _, flown = _displacement(scheme[: stage + 1], velocity=1.0, forced=None)
+        velocity, _ = _displacement(scheme, velocity=0.0, forced=stage)
+        courses.append(StageCourse(flown, velocity))
+    return tuple(courses)
+
+
+def _displacement(scheme: tuple[Stage, ...], *, velocity: float, forced: int | None) -> tuple[float, float]:
+    """Velocity and displacement of a mass of 1 kg at the end, which a force of 1 N acts on in one stage."""
+    reached, speed = 0.0, velocity
+    for number, stage in enumerate(scheme):
+        moved = stage.target_velocity * velocity + stage.target_reached * reached
+        if number == forced:
+            moved += stage.force_share * stage.scale**2
+        speed = moved / stage.scale - stage.velocity_kept * velocity - stage.velocity_reached * reached
+        reached = moved
+    return speed, reached

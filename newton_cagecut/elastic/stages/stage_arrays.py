@@ -12,7 +12,7 @@ from __future__ import annotations
 import warp as wp
 
 from ..arrays import BodyArrays
-from .scheme import Stage
+from .scheme import Stage, StageCourse
 
 
 @wp.struct
@@ -27,6 +27,8 @@ class StageFactors:
     force_share: wp.float64
     damping_share: wp.float64
     start_share: wp.float64
+    end_time: wp.float64
+    impulse_share: wp.float64
 
 
 @wp.struct
@@ -55,6 +57,8 @@ class StageArrays:
     """The same, for further terms of the system."""
     earlier_velocity: wp.array[wp.vec3]
     """What the velocity at the end lacks of ``moved`` over the stage's scale [m/s]."""
+    end_velocity: wp.array[wp.vec3]
+    """Velocity at the end of the stage, for further terms [m/s]."""
     inertia: wp.array[wp.vec3d]
     """Mass matrix times the places in the piece [kg m]."""
     momentum: wp.array[wp.vec3d]
@@ -91,10 +95,10 @@ class PieceArrays:
     """Part of the solution that is taken; before, how far the stress at the start is trusted; in [0, 1]."""
 
 
-def make_stage_factors(stage: Stage) -> StageFactors:
+def make_stage_factors(stage: Stage, course: StageCourse) -> StageFactors:
     """The factors of a stage."""
     factors = StageFactors()
-    for name, value in stage._asdict().items():
+    for name, value in (stage._asdict() | course._asdict()).items():
         setattr(factors, name, value)
     return factors
 
@@ -106,7 +110,8 @@ def make_stage_arrays(body: BodyArrays) -> StageArrays:
         for name in ("velocity", "reached", "target", "impulse", "load", "guess", "moved", "inertia", "momentum"):
             setattr(stage, name, wp.zeros(capacity, dtype=wp.vec3d))
         stage.row_mass = wp.zeros(capacity, dtype=wp.float64)
-        for name in ("start", "moved_single", "earlier_velocity", "product", "position_out", "velocity_out"):
+        names = ("start", "moved_single", "earlier_velocity", "end_velocity", "product", "position_out", "velocity_out")
+        for name in names:
             setattr(stage, name, wp.zeros(capacity, dtype=wp.vec3))
     return stage
 

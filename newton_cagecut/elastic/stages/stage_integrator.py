@@ -13,8 +13,8 @@ from ..solve.linear_solver import SolveLimits
 from ..solve.point_forces import PointForces
 from . import rigid_fit, stage_kernels, start_forces, start_limit
 from .line_search import LineSearch
-from .scheme import Scheme
-from .stage_arrays import make_piece_arrays, make_stage_arrays, make_stage_factors
+from .scheme import Scheme, courses_of
+from .stage_arrays import StageFactors, make_piece_arrays, make_stage_arrays, make_stage_factors
 from .step_record import StepRecord
 
 
@@ -82,6 +82,8 @@ class StageIntegrator(ImplicitIntegrator):
                 self._find_strain()
             self._improve(points)
         self._end_stage.launch()
+        if points is not None:
+            self._add_point_impulse(points)
 
     def _improve(self, points: PointForces | None) -> None:
         """One iteration of Newton's method."""
@@ -126,22 +128,27 @@ class StageIntegrator(ImplicitIntegrator):
         )
         self._stage_launches = tuple(
             (
-                self._once(
-                    stage_kernels.set_scales, [make_stage_factors(free), make_stage_factors(touched), body, step]
-                ),
+                self._once(stage_kernels.set_scales, [*factors, body, step]),
                 *self._strain_launches,
                 begin_stage,
                 find_centers,
                 *(start_launches if free.start_share else ()),
                 *guess_launches,
             )
-            for free, touched in zip(*scheme, strict=True)
+            for free, factors in zip(scheme.free, _factors(scheme), strict=True)
         )
         everything = [body, step, stage, system]
         self._add_point_residual = self.solver.adding_residual(stage.moved_single, stage.earlier_velocity)
         self._add_point_product = self.solver.adding_product(system.solution, stage.product)
+        self._add_point_impulse = self.solver.adding_impulse(stage.moved_single, stage.end_velocity)
         self._show_moved = self._per_vertex(stage_kernels.show_moved, everything)
         self._inertial_residual = self._per_vertex(stage_kernels.find_inertial_residual, everything)
         self._multiply_inertia = self._per_vertex(stage_kernels.multiply_inertia, everything)
         self._take_solution = self._per_vertex(stage_kernels.take_solution, [body, stage, pieces, system])
         self._end_stage = self._per_vertex(stage_kernels.end_stage, [body, step, stage])
+
+
+def _factors(scheme: Scheme) -> list[list[StageFactors]]:
+    """The factors of each stage where nothing touches the body, and where something does."""
+    kinds = [map(make_stage_factors, stages, courses_of(stages)) for stages in scheme]
+    return [list(factors) for factors in zip(*kinds, strict=True)]

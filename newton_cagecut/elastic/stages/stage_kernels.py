@@ -13,8 +13,11 @@ from ..arrays import (
     DRIVEN,
     ELASTIC_FORCE,
     ELASTIC_STIFFNESS,
+    END_TIME,
     FORCE,
     HELD,
+    IMPULSE_SHARE,
+    JOINED,
     STAGE_TIME,
     START_SHARE,
     STIFFNESS,
@@ -102,6 +105,9 @@ def scale_stage(factors: StageFactors, damping_time: wp.float64, scales: wp.arra
     scales[TARGET_REACHED] = factors.target_reached
     scales[VELOCITY_KEPT] = factors.velocity_kept
     scales[VELOCITY_REACHED] = factors.velocity_reached / dt
+    scales[END_TIME] = factors.end_time * dt
+    scales[IMPULSE_SHARE] = factors.impulse_share * dt
+    scales[JOINED] = wp.float64(0.0)
 
 
 @wp.kernel(enable_backward=False)
@@ -196,6 +202,8 @@ def end_stage(body: BodyArrays, step: StepArrays, stage: StageArrays):
     i = wp.tid()
     moved = stage.moved[i]
     stage.reached[i] = moved
+    stage.moved_single[i] = wp.vec3(moved)
+    stage.end_velocity[i] = wp.vec3(moved / step.scales[STAGE_TIME] - wp.vec3d(stage.earlier_velocity[i]))
     step.displacement[i] = wp.vec3(wp.vec3d(stage.start[i]) - wp.vec3d(body.rest[i]) + moved)
     step.predicted[i] = wp.vec3()
 

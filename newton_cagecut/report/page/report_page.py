@@ -53,7 +53,7 @@ def _heading(report: dict, count: int) -> str:
         f"Made by `python -m newton_cagecut report --effort {settings['name']}` on "
         f"{machine['device']} ({machine['processor']}, {machine['cores']} cores), from {count} measurements. Seeds "
         f"{', '.join(map(str, settings['seeds']))}; those of the references from 1000 and 2000 on. All figures are in "
-        "`report.json`."
+        "`report.json`. On a machine that has other work too, times compare with their neighbours only."
     )
 
 

@@ -13,6 +13,7 @@ from ...cage import Cage
 from ...elastic import Material
 from ...surface import Surface
 from .capacity import Capacity
+from .contact_material import ContactMaterial
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +32,9 @@ class BodyDefinition:
         cuttable: Whether it can be cut.
         capacity: Room for cuts.
         contact_radius: Radius of the surface points as Newton's particles [m]; None without contact.
+        contact_material: Its stiffness, damping and friction.
+        self_contact: Whether each of its pieces touches itself.
+        pieces_touch: Whether its pieces touch each other.
         thickness: Thickness of a plane body [m]; None for a solid one.
         options: Further options of the harmonic coordinates.
         edit: Number of the edit that it is as of, 0 before the first; undoing one goes back to the number before.
@@ -49,6 +53,9 @@ class BodyDefinition:
     cuttable: bool
     capacity: Capacity
     contact_radius: float | None
+    contact_material: ContactMaterial
+    self_contact: bool
+    pieces_touch: bool
     thickness: float | None
     options: dict[str, object]
     edit: int = 0

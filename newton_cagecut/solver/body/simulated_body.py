@@ -83,7 +83,7 @@ class SimulatedBody:
         self.world = int(model.particle_world.numpy()[vertex_start])
         """World of the body, -1 for the global one."""
         self.system = self._make_system() if self.quadrature_count else None
-        self.contact = ContactTerm(self) if self.has_contact and self.system else None
+        self.contact = ContactTerm(self) if self.has_contact else None
         self._surface_buffer = None
         self.uncut: tuple[BodyQuadrature | None, CoordinatesSnapshot] | None = None
         self._prescribed = wp.zeros(self.capacity.vertices, dtype=wp.vec3, device=self.device)
@@ -121,11 +121,12 @@ class SimulatedBody:
         self,
         state_in: newton.State,
         state_out: newton.State,
-        contacts: newton.Contacts | None,
         dt: float,
         targets: wp.array,
     ) -> None:
         """Advance the cage's vertices, and the surface's particles with them; launches kernels only.
+
+        Forces on surface points are those that ``contact`` has collected.
 
         A body of which ``state_in`` missed an edit stays where it is there.
         """
@@ -135,10 +136,7 @@ class SimulatedBody:
             inputs = [dt, q_in, qd_in, targets[self.vertices], self.is_current, q_out, qd_out]
             wp.launch(place_vertices, dim=q_in.size, inputs=inputs, device=self.device)
         else:
-            points = None
-            if self.contact is not None and contacts is not None:
-                self.contact.collect(state_in, contacts)
-                points = self.contact.points
+            points = None if self.contact is None else self.contact.points
             forces = state_in.particle_f[self.vertices]
             q_old, qd_old = self._before_step(q_in, qd_in) if state_in is state_out else (q_in, qd_in)
             motion = [dt, q_in, qd_in, targets[self.vertices], self.is_current, self.fixed, self._prescribed]
@@ -341,6 +339,8 @@ class SimulatedBody:
             self.system.stabilize(self.cage.vertices, self.cage.mesh.edges)
             self.system.refresh()
             self.show_masses()
+        if self.contact is not None:
+            self.contact.refresh()
 
     def show_masses(self) -> None:
         """Bring the model's masses up to date with the system's."""
