@@ -206,6 +206,11 @@ CALLS: dict[str, Call] = {
         lambda w: {"sites": [0, 1]},
         {"sites": ("no list", "one index", "the same twice")},
     ),
+    "Surface.on_several_cuts": Call(
+        lambda w: w.surface.on_several_cuts,
+        lambda w: {"sites": [0, 1]},
+        {"sites": ("no list", "one index", "the same twice")},
+    ),
     "Material": Call(
         lambda w: cagecut.Material,
         lambda w: {"young": 1e4, "poisson": 0.3, "density": 1e3, "damping": 0.0, "model": "stvk"},

@@ -285,3 +285,27 @@ def test_crossing_cuts_keep_surface_points_with_their_piece(share: float, dimens
         rows = shares[body.surface.mesh.vertex_component == piece]
         home = rows.sum(axis=0).argmax()
         assert (np.delete(rows, home, axis=1) == 0.0).all()
+
+
+@pytest.mark.parametrize("angle", [0.0, 25.0, 45.0, 90.0])
+def test_points_in_the_blades_plane_go_with_their_piece(angle: float):
+    """A ball whose own points lie in the blade's plane comes apart clean, step by step too."""
+    builder = newton.ModelBuilder()
+    cagecut.SolverCageCut.register_custom_attributes(builder)
+    vertices = [(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    mesh = newton.Mesh.create_sphere(0.9, num_latitudes=8, num_longitudes=8)
+    edge = (np.cos(np.radians(angle)), np.sin(np.radians(angle)), 0.0)
+    normal = np.array([-edge[1], edge[0], 0.0])
+    mesh.vertices[:] = mesh.vertices @ [edge, normal, (0.0, 0.0, 1.0)]  # in single precision: in the plane but for that
+    cagecut.add_cage_body(builder, cagecut.Cage(vertices, faces), mesh, walks=32, quadrature=0)
+    model = builder.finalize()
+    solver, state = cagecut.SolverCageCut(model), model.state()
+    cut, body = solver.begin_cut(0, cagecut.Blade((0.0, 0.0, 0.0), edge, (0.0, 0.0, -1.0))), solver.body(0)
+    for depth in (0.3, 1.01, 1.6, cut.length):
+        solver.advance_cut(cut, to=depth, states=(state,))
+    assert (np.abs(mesh.vertices @ normal) < 1e-6).sum() > 8
+    component, owner = body.surface.mesh.vertex_component, np.asarray(body.cage.vertex_component)
+    shares = body.surface_weights @ (np.arange(2) == owner[:, None]).astype(np.float32)
+    np.testing.assert_allclose(shares.max(axis=1), 1.0, atol=1e-5)
+    assert len(np.unique(np.stack([shares.argmax(axis=1), component]), axis=1).T) == 2

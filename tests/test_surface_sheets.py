@@ -122,7 +122,7 @@ def test_any_triangles_become_sheets(seed):
         turned = rng.random(len(triangles)) < rng.choice([0.0, 0.1])
         triangles[turned] = triangles[turned, ::-1]
     surface = Surface(points, triangles)
-    if is_soup and not is_cuttable(surface):
+    if not is_cuttable(surface):  # boxes in a ring around one that is missing touch themselves so, too
         return
     check_sheets(surface)
     volume = closed_volume(surface)

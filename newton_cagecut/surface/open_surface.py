@@ -20,6 +20,9 @@ from .corner_shares import CornerShares
 from .splitting import cap_triangles, split_triangles
 from .surface import Surface
 
+_BESIDE = 1e-9
+"""Distance up to which an old site and a new one lie at one place, of the size of the surface."""
+
 
 def open_surface(base: Surface, opening: Opening, wall: int) -> Surface:
     """The surface that a section opened up to a front leaves.
@@ -63,7 +66,7 @@ class _OpenSurface:
             triangles=triangles,
             point_site=None if base.point_site is None else np.concatenate([base.point_site, new_points]),
             sites=np.concatenate([base.site_points, placed]),
-            site_key=np.concatenate([base.site_key, keys]),
+            site_key=np.concatenate([self._old_keys(keys, placed, minus[minus == plus]), keys]),
             uvs=self._point_values(base.uvs, source),
             own_corner_uvs=None if base.own_corner_uvs is None else self._corner_values(base.own_corner_uvs),
             normals=None if normals is None else units(normals),
@@ -76,6 +79,25 @@ class _OpenSurface:
                 triangle=self._triangle_values,
             ),
         )
+
+    def _old_keys(self, keys: np.ndarray, placed: np.ndarray, tips: np.ndarray) -> np.ndarray:
+        """Keys of the old sites: one in the blade's plane is on the wall as the new site beside it is.
+
+        Args:
+            keys: Keys of the new sites.
+            placed: Where they are [m].
+            tips: New sites at the tips, which are on both sides.
+        """
+        base, old = self.base, self.base.site_key.copy()
+        sided = np.ones(len(keys), dtype=bool)
+        sided[tips - base.site_count] = False
+        pairs = np.concatenate([self.skin[:, [i, j]] for i in range(3) for j in range(3) if i != j])
+        pairs = pairs[(pairs[:, 0] < base.site_count) & (pairs[:, 1] >= base.site_count)]
+        pairs = pairs[(old[pairs[:, 0]] < 0) & sided[pairs[:, 1] - base.site_count]]
+        distances = np.linalg.norm(base.site_points[pairs[:, 0]] - placed[pairs[:, 1] - base.site_count], axis=1)
+        site, new = pairs[distances <= _BESIDE * np.ptp(base.site_points, axis=0).max()].T
+        old[site] = keys[new - base.site_count]
+        return old
 
     @cached_property
     def _changed(self) -> np.ndarray:

@@ -349,7 +349,12 @@ class Surface:
 
         Args:
             sites: Site ids, shape (n,).
+
+        Raises:
+            TypeError: If they are not integers.
+            ValueError: If one is of no site.
         """
+        sites = as_indices(sites, "sites", of="site", limit=self.site_count)
         if self.dimension == 2:
             return self.site_key[sites] >= 0
         low, high = np.full(self.site_count, np.iinfo(np.int32).max), np.full(self.site_count, -1)
