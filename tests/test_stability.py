@@ -120,7 +120,7 @@ def test_rows_measure(bench):
     assert spun.momentum_drift < 1e-4
     fallen = motion.fall(bench)
     assert fallen.error < 0.02
-    bent = statics.cantilever(bench, 0.0, 2)
+    bent = statics.cantilever(bench, 0.0, 2, "points")
     assert bent.error < 1.0
     assert "of 0.04096" in bent.note
     start = starts.scaled(bench, "neo_hookean", (1.0, 1.0, 0.5))

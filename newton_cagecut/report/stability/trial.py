@@ -30,11 +30,12 @@ class Trial:
     Args:
         builder: The builder, with cage bodies.
         collide: Whether bodies touch shapes.
+        options: Options of the solver.
     """
 
-    def __init__(self, builder: newton.ModelBuilder, *, collide: bool = False) -> None:
+    def __init__(self, builder: newton.ModelBuilder, *, collide: bool = False, **options: object) -> None:
         self.model = builder.finalize()
-        self.solver = SolverCageCut(self.model)
+        self.solver = SolverCageCut(self.model, **options)
         # Masses, gradients and iterations are no part of a body's face; only measurements look behind it.
         self.bodies = tuple(body._simulated for body in self.solver.bodies)
         self.state, self._other = self.model.state(), self.model.state()

@@ -50,6 +50,7 @@ class Workbench:
         cuttable: bool = False,
         walks: int = WALKS,
         quadrature: int = QUADRATURE,
+        strain: str = "points",
         key: str = "",
         **options: object,
     ) -> Trial:
@@ -65,11 +66,13 @@ class Workbench:
             cuttable: Whether it can be cut.
             walks: Walks a point.
             quadrature: Quadrature points.
+            strain: The solver's strain.
             key: Tells bars apart that differ in ``fixed`` or ``options`` only.
             options: Further options of ``add_cage_body``.
         """
-        which = (segments, size, tuple(gravity), ground, walks, quadrature, key)
+        which = (segments, size, tuple(gravity), ground, walks, quadrature, strain, key)
         options |= {"gravity": gravity, "fixed": fixed, "ground": ground, "walks": walks, "quadrature": quadrature}
+        options["strain"] = strain
 
         def build() -> Trial:
             cage = bar(segments, size).cage()
@@ -85,6 +88,7 @@ class Workbench:
         fixed: Callable[[np.ndarray], np.ndarray],
         walks: int,
         quadrature: int,
+        strain: str = "points",
     ) -> Trial:
         """An L at rest, its legs as in ``BRACKET``.
 
@@ -94,15 +98,16 @@ class Workbench:
             fixed: Tells which vertices, given as (n, 3) [m], are fixed.
             walks: Walks a point.
             quadrature: Quadrature points.
+            strain: The solver's strain.
         """
 
         def build() -> Trial:
             blocks = bracket(segments, *BRACKET)
             leg = Blocks((blocks.axes[0][[0, -2]], blocks.axes[1], blocks.axes[2][:2]), np.ones((1, 1, 1), dtype=bool))
-            options = {"fixed": fixed, "walks": walks, "quadrature": quadrature, "cuttable": False}
+            options = {"fixed": fixed, "walks": walks, "quadrature": quadrature, "cuttable": False, "strain": strain}
             return _trial(blocks.cage(), surface_in(leg.cage()), material, **options)
 
-        return self._again(material, ("bracket", segments, walks, quadrature), build)
+        return self._again(material, ("bracket", segments, walks, quadrature, strain), build)
 
     def subject(self, material: Material) -> Trial:
         """The bodies of the scene, or a bar, as they were built, of a material."""
@@ -141,6 +146,7 @@ def _trial(
     gravity: Sequence[float] = (0.0, 0.0, 0.0),
     fixed: Callable[[np.ndarray], np.ndarray] | None = None,
     ground: bool = False,
+    strain: str = "points",
     **options: object,
 ) -> Trial:
     """A body alone, or above a plane that its surface touches."""
@@ -151,7 +157,7 @@ def _trial(
         options.setdefault("contact_radius", 0.01)
     held = None if fixed is None else fixed(cage.vertices)
     add_cage_body(builder, cage, surface, fixed=held, material=material, **options)
-    trial = Trial(builder, collide=ground)
+    trial = Trial(builder, collide=ground, strain=strain)
     trial.model.soft_contact_ke = _CONTACT
     return trial
 

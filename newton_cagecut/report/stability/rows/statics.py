@@ -28,23 +28,23 @@ _TURN = 1.0e-3
 """Angle between the ends of a bar under torsion [rad]."""
 
 
-def cantilever(bench: Workbench, poisson: float, segments: int) -> Outcome:
+def cantilever(bench: Workbench, poisson: float, segments: int, strain: str) -> Outcome:
     """The tip of a clamped bar under a small force across it."""
-    force, deflection, trial = _bent(bench, poisson, segments, BAR, 2)
+    force, deflection, trial = _bent(bench, poisson, segments, BAR, 2, strain)
     expected = tip_deflection(force, size=BAR, young=YOUNG, poisson=poisson)
     return _against(trial, deflection, expected, "Timoshenko")
 
 
-def flat_cantilever(bench: Workbench, poisson: float, segments: int, axis: int) -> Outcome:
+def flat_cantilever(bench: Workbench, poisson: float, segments: int, axis: int, strain: str) -> Outcome:
     """The same with a flat bar, along its thin side or its wide one."""
-    force, deflection, trial = _bent(bench, poisson, segments, _FLAT_BAR, axis)
+    force, deflection, trial = _bent(bench, poisson, segments, _FLAT_BAR, axis, strain)
     return _against(trial, deflection, force / YOUNG * bar_deflection(_FLAT_BAR, poisson, axis), ELEMENTS)
 
 
-def torsion(bench: Workbench, poisson: float, segments: int) -> Outcome:
+def torsion(bench: Workbench, poisson: float, segments: int, strain: str) -> Outcome:
     """A bar between held ends that are turned against each other: the moment, by the elastic energy."""
     material = Material(young=YOUNG, poisson=poisson)
-    trial = bench.bar(material, segments=segments, fixed=_ends, key="ends", **_fine(segments))
+    trial = bench.bar(material, segments=segments, fixed=_ends, key="ends", strain=strain, **_fine(segments))
     turned = trial.rest.copy()
     end = turned[:, 0] > BAR[0] - 1.0e-6
     turned[end, 1:] += _TURN * np.stack([-turned[end, 2], turned[end, 1]], axis=1)
@@ -55,20 +55,20 @@ def torsion(bench: Workbench, poisson: float, segments: int) -> Outcome:
     return _against(trial, expected, trial.energy()[0], f"{ELEMENTS}, turn under a moment")
 
 
-def bracket(bench: Workbench, poisson: float, segments: int, axis: int) -> Outcome:
+def bracket(bench: Workbench, poisson: float, segments: int, axis: int, strain: str) -> Outcome:
     """An L, clamped at one end, under a small force at the other."""
     material = Material(young=YOUNG, poisson=poisson)
-    trial = bench.bracket(material, segments, fixed=_clamped, **_fine(2 * segments))
+    trial = bench.bracket(material, segments, fixed=_clamped, strain=strain, **_fine(2 * segments))
     tip = trial.rest[:, 2] > sum(BRACKET) - 1.0e-6
     force = 1.0e-4 * YOUNG * BRACKET[1] ** 2
     expected = force / YOUNG * bracket_deflection(*BRACKET, poisson, axis)
     return _against(trial, _pushed(trial, tip, axis, force), expected, ELEMENTS)
 
 
-def frequency(bench: Workbench, bending: bool, segments: int) -> Outcome:
+def frequency(bench: Workbench, bending: bool, segments: int, strain: str) -> Outcome:
     """A free bar in its first axial or bending mode, in steps of a hundredth of a period."""
     material = Material(young=YOUNG, poisson=0.3, density=DENSITY)
-    trial = bench.bar(material, segments=segments, **_fine(segments))
+    trial = bench.bar(material, segments=segments, strain=strain, **_fine(segments))
     rest, masses, length = trial.rest, trial.vertex_masses(), BAR[0]
     shape = np.zeros_like(rest)
     if bending:
@@ -89,10 +89,10 @@ def frequency(bench: Workbench, bending: bool, segments: int) -> Outcome:
     return _against(trial, found, expected, "Timoshenko" if bending else "sqrt(E / rho) / 2 L", free=True)
 
 
-def edge_crack(bench: Workbench, segments: int) -> Outcome:
+def edge_crack(bench: Workbench, segments: int, strain: str) -> Outcome:
     """A bar cut half through in its middle, its ends pulled apart: how far the cut opens."""
     material = Material(young=YOUNG, poisson=0.3)
-    trial = bench.bar(material, segments=segments, fixed=_ends, cuttable=True, walks=128, quadrature=300)
+    trial = bench.bar(material, segments=segments, fixed=_ends, cuttable=True, strain=strain, walks=128, quadrature=300)
     cut = trial.solver.begin_cut(0, Blade((0.5, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, 0.0, -1.0)))
     trial.solver.advance_cut(cut, to=0.5 * BAR[2], states=trial.states)
     rest, pull = trial.rest, 1.0e-3
@@ -109,11 +109,13 @@ def _fine(segments: int) -> dict[str, int]:
 
 
 def _bent(
-    bench: Workbench, poisson: float, segments: int, size: tuple[float, float, float], axis: int
+    bench: Workbench, poisson: float, segments: int, size: tuple[float, float, float], axis: int, strain: str
 ) -> tuple[float, float, Trial]:
     """A clamped bar under a force at its tip: the force [N], how far the tip goes [m], and the bar."""
     material = Material(young=YOUNG, poisson=poisson)
-    trial = bench.bar(material, segments=segments, size=size, fixed=_clamped, key="clamped", **_fine(segments))
+    trial = bench.bar(
+        material, segments=segments, size=size, fixed=_clamped, key="clamped", strain=strain, **_fine(segments)
+    )
     force = 0.01 * YOUNG * size[1] * size[2] * (min(size[1:]) / size[0]) ** 2
     return force, _pushed(trial, trial.rest[:, 0] > size[0] - 1.0e-6, axis, force), trial
 
@@ -146,7 +148,7 @@ def _ends(vertices: np.ndarray) -> np.ndarray:
     return np.flatnonzero((vertices[:, 0] < 1.0e-6) | (vertices[:, 0] > 1.0 - 1.0e-6))
 
 
-ROWS: tuple[tuple[str, Callable[[Workbench], Outcome], bool], ...] = (
+_ROWS: tuple[tuple[str, Callable[..., Outcome], bool], ...] = (
     *(
         (f"cantilever, 8 segments, Poisson {poisson}", partial(cantilever, poisson=poisson, segments=8), True)
         for poisson in (0.0, 0.3, 0.45, 0.49, 0.499)
@@ -185,4 +187,10 @@ ROWS: tuple[tuple[str, Callable[[Workbench], Outcome], bool], ...] = (
         for n in (4, 8)
     ),
     *((f"edge crack, {n} segments", partial(edge_crack, segments=n), n == 4) for n in (4, 8, 16)),
+)
+
+ROWS: tuple[tuple[str, Callable[[Workbench], Outcome], bool], ...] = tuple(
+    (f"{name}{text}", partial(run, strain=strain), quick)
+    for strain, text in (("points", ""), ("averaged", ", averaged strain"))
+    for name, run, quick in _ROWS
 )
