@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) 2026 The newton_cagecut developers
 # SPDX-License-Identifier: Apache-2.0
-"""A mesh of your own: an OBJ file gets a cage and is cut, in 25 lines; ``--mesh FILE`` takes another one.
+"""A mesh of your own: a file (an OBJ here) gets a cage and is cut, in 25 lines.
 
 The cage is made by ``wrap_cage``, which needs ``pip install 'newton_cagecut[wrap]'``.
 
