@@ -4,14 +4,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 import pytest
 
 from assets.sphere import icosphere
 from cage_shapes import box
-from newton_cagecut.cage import Cage
-from newton_cagecut.surface import Surface
+from newton_cagecut.cage import Cage, Cut
+from newton_cagecut.section import Blade
+from newton_cagecut.surface import Surface, SurfaceCut
 from plane_shapes import square
+
+
+def cut_through(surface: Surface, blades: Sequence[Blade], steps: int = 4) -> Iterator[Surface]:
+    """Cut a surface in the unit box by blades, one after the other; yields the surface after each step."""
+    cage = box() if surface.dimension == 3 else square()
+    for blade in blades:
+        cut = Cut(cage, blade)
+        surface_cut = SurfaceCut(surface, cut.plane, cut.wall, window=cut.window)
+        for depth in cut.length * np.linspace(0.2, 1.01, steps):
+            edit = cut.advance(to=depth)
+            surface = surface_cut.advance(edit.front).surface
+            yield surface
+        cage = edit.cage
 
 
 def sphere(level: int = 3, radius: float = 0.45, center=(0.5, 0.5, 0.5)) -> Surface:

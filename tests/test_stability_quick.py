@@ -16,7 +16,9 @@ def test_no_row_is_out_of_limits_that_it_kept(tmp_path):
     """What the committed table has within its limits is within them now."""
     kept = {name for name, record in _records(COMMITTED).items() if record["values"].get("failures") == []}
     status = measure_all(None, tmp_path, quick=True)
-    failed = {name for name, record in _records(tmp_path / "stability.json").items() if record["values"].get("failures")}
+    failed = {
+        name for name, record in _records(tmp_path / "stability.json").items() if record["values"].get("failures")
+    }
     assert bool(failed) <= bool(status)
     assert not failed & kept
 

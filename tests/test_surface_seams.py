@@ -6,11 +6,10 @@ import newton
 import numpy as np
 import pytest
 
-from newton_cagecut.cage import Cut
 from newton_cagecut.section import Blade
-from newton_cagecut.surface import Surface, SurfaceCut
-from solver_scenes import box_cage, make_solver, run
-from surface_shapes import bumpy_sphere, check_closed, grid, gridded_box
+from newton_cagecut.surface import Surface
+from solver_scenes import make_solver, run
+from surface_shapes import bumpy_sphere, check_closed, cut_through, grid, gridded_box
 
 BLADES = (
     Blade([0.45, 0.5, 0.5], [0.1, 1.0, 0.15], [0.2, -0.1, -1.0]),
@@ -31,19 +30,6 @@ def split_box() -> Surface:
     return Surface(mesh.vertices + 0.5, mesh.indices.reshape(-1, 3), uvs=mesh.uvs, normals=mesh.normals)
 
 
-def cut_through(surface: Surface, blades=BLADES, steps: int = 4):
-    """Cut a surface in the unit box by blades, one after the other; yields the surface after each step."""
-    cage = box_cage(surface.dimension)
-    for blade in blades:
-        cut = Cut(cage, blade)
-        surface_cut = SurfaceCut(surface, cut.plane, cut.wall, window=cut.window)
-        for depth in cut.length * np.linspace(0.2, 1.01, steps):
-            edit = cut.advance(to=depth)
-            surface = surface_cut.advance(edit.front).surface
-            yield surface
-        cage = edit.cage
-
-
 def corner_normals_of(surface: Surface) -> np.ndarray:
     """Normals of the triangles, shape (triangle_count, 3)."""
     area = surface.mesh.face_area_vector
@@ -55,7 +41,7 @@ def test_box_of_24_points_is_cut_as_a_solid():
     surface = split_box()
     assert (surface.point_count, surface.site_count, surface.closed) == (24, 8, True)
     plain = Surface(surface.site_points, surface.site_triangles)
-    for now, simple in zip(cut_through(surface), cut_through(plain), strict=True):
+    for now, simple in zip(cut_through(surface, BLADES), cut_through(plain, BLADES), strict=True):
         check_closed(now, surface.volume)
         np.testing.assert_array_equal(now.points[:24], surface.points)
         np.testing.assert_array_equal(now.points, now.site_points[now.point_site])
@@ -73,7 +59,7 @@ def test_triangles_apart_are_cut_like_the_whole(shape):
     """A mesh in which every triangle has points of its own gives the sites and caps of the mesh that shares them."""
     whole, apart = shape(), split_everywhere(shape())
     assert apart.site_count == whole.point_count
-    for now, simple in zip(cut_through(apart), cut_through(whole), strict=True):
+    for now, simple in zip(cut_through(apart, BLADES), cut_through(whole, BLADES), strict=True):
         assert now.closed
         assert (now.site_count, now.triangle_count) == (simple.point_count, simple.triangle_count)
         assert now.volume == pytest.approx(whole.volume)
@@ -122,7 +108,7 @@ def test_poles_of_a_sphere_with_a_seam():
     triangles = np.concatenate([np.stack([a, a + 1, a + 8], axis=1), np.stack([a, a + 8, a + 7], axis=1)])
     surface = Surface(points.reshape(-1, 3), triangles, uvs=np.stack([u, v], axis=-1).reshape(-1, 2))
     assert (surface.site_count, surface.triangle_count, surface.closed) == (12 * 5 + 2, 2 * 12 * 5, True)
-    for now in cut_through(surface):
+    for now in cut_through(surface, BLADES):
         check_closed(now, surface.volume)
         seam = now.uvs[now.triangles[now.triangle_cap < 0]]
         assert np.ptp(seam[..., 0], axis=1).max() < 1.0 / 12.0 + 1e-12

@@ -10,31 +10,17 @@ from hypothesis import strategies as st
 
 import newton_cagecut as cagecut
 from cage_shapes import box
-from newton_cagecut.cage import Cut
 from newton_cagecut.section import Blade
-from newton_cagecut.surface import Surface, SurfaceCut
+from newton_cagecut.surface import Surface
 from odd_meshes import CLOSED, PARTLY_OPEN, box_mesh, box_with_doubled_triangles, hemisphere, joined, sphere_mesh
 from solver_scenes import make_solver
-from surface_shapes import check_closed
+from surface_shapes import check_closed, cut_through
 
 BLADES = (
     Blade([0.45, 0.5, 0.5], [0.1, 1.0, 0.15], [0.2, -0.1, -1.0]),
     Blade([0.5, 0.47, 0.5], [1.0, 0.1, -0.05], [0.0, 0.2, -1.0]),
     Blade([0.5, 0.5, 0.53], [0.1, 1.0, 0.15], [1.0, -0.1, 0.1]),
 )
-
-
-def cut_through(surface: Surface, blades=BLADES, steps: int = 4):
-    """Cut a surface in the unit box by blades, one after the other; yields the surface after each step."""
-    cage = box()
-    for blade in blades:
-        cut = Cut(cage, blade)
-        surface_cut = SurfaceCut(surface, cut.plane, cut.wall, window=cut.window)
-        for depth in cut.length * np.linspace(0.2, 1.01, steps):
-            edit = cut.advance(to=depth)
-            surface = surface_cut.advance(edit.front).surface
-            yield surface
-        cage = edit.cage
 
 
 def closed_volume(surface: Surface) -> float:
@@ -69,7 +55,7 @@ def test_closed_sheets_stay_closed(name):
     assert (surface.closed, surface.mesh.component_count) == (True, count)
     assert surface.volume > 0.0
     area = skin_area(surface)
-    for now in cut_through(surface):
+    for now in cut_through(surface, BLADES):
         check_closed(now, surface.volume)
         assert skin_area(now) == pytest.approx(area)
     assert len(np.unique(now.triangle_cap)) == 1 + len(BLADES)
@@ -87,7 +73,7 @@ def test_open_sheets_get_no_caps(name):
     assert closed_volume(surface) == pytest.approx(volume)
     area = skin_area(surface)
     check_sheets(surface)
-    for now in cut_through(surface):
+    for now in cut_through(surface, BLADES):
         check_sheets(now)
         assert skin_area(now) == pytest.approx(area)
         assert closed_volume(now) == pytest.approx(volume)

@@ -110,6 +110,18 @@ class CutScene(Scene):
         options = {"capacity": room, "contact_radius": 0.004, "walks": self.walks, "label": name} | options
         return add_cage_body(builder, cage, surface, material=material, **options)
 
+    @staticmethod
+    def add_stand(builder: newton.ModelBuilder, *, radius: float, height: float) -> None:
+        """Add a cylinder that stands on the ground at the origin.
+
+        Args:
+            builder: The builder.
+            radius: Its radius [m].
+            height: Its height [m].
+        """
+        place = wp.transform((0.0, 0.0, 0.5 * height), wp.quat_identity())
+        builder.add_shape_cylinder(-1, xform=place, radius=radius, half_height=0.5 * height)
+
     def advance(self) -> None:
         """Advance the blade and the time by a frame."""
         for schedule in self.schedules:

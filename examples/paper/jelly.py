@@ -38,9 +38,7 @@ class Example(CutScene):
             xform=wp.transform((0.0, 0.0, STAND_HEIGHT + 0.02), wp.quat_identity()),
             crossing=True,
         )
-        half = 0.5 * STAND_HEIGHT
-        place = wp.transform((0.0, 0.0, half), wp.quat_identity())
-        builder.add_shape_cylinder(-1, xform=place, radius=STAND_RADIUS, half_height=half)
+        self.add_stand(builder, radius=STAND_RADIUS, height=STAND_HEIGHT)
 
     def cuts(self) -> tuple[PlannedCut, ...]:
         return CUTS

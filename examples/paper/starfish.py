@@ -47,10 +47,7 @@ class Example(CutScene):
             material=Material(young=2e4, poisson=0.4, density=1000.0, damping=0.01),
             xform=wp.transform((0.0, 0.0, STAND_HEIGHT + 0.1), wp.quat_from_axis_angle(wp.vec3(0.0, 0.0, 1.0), TURN)),
         )
-        half = 0.5 * STAND_HEIGHT
-        builder.add_shape_cylinder(
-            -1, xform=wp.transform((0.0, 0.0, half), wp.quat_identity()), radius=STAND_RADIUS, half_height=half
-        )
+        self.add_stand(builder, radius=STAND_RADIUS, height=STAND_HEIGHT)
 
     def cuts(self) -> tuple[PlannedCut, ...]:
         return CUTS

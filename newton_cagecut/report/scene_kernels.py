@@ -14,7 +14,7 @@ import warp as wp
 from ..cage import Cage
 from ..solver import SolverCageCut, add_cage_body
 from .machine import chosen_device
-from .scenes.building import build_of
+from .scenes.building import build_of, built
 from .stability.shapes import bar, surface_in
 
 _POINTS = {"walks": 16, "quadrature": 20, "contact_radius": 0.01}
@@ -34,10 +34,7 @@ def warm_up_scenes(scenes: Sequence[str], *, device: str | None = None) -> None:
     """
     with wp.ScopedDevice(chosen_device(device)):
         for build in [build_of(name) for name in scenes] or [_solid, _plane]:
-            builder = newton.ModelBuilder()
-            SolverCageCut.register_custom_attributes(builder)
-            build(builder)
-            SolverCageCut(builder.finalize()).warm_up()
+            SolverCageCut(built(build).finalize()).warm_up()
     print(f"the kernels are in {wp.config.kernel_cache_dir}")
 
 

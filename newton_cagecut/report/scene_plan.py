@@ -14,7 +14,7 @@ import warp as wp
 
 from ..solver import PlanEntry, SolverCageCut
 from .machine import chosen_device
-from .scenes.building import build_of
+from .scenes.building import build_of, built
 
 _PACKAGE = __package__.split(".")[0]
 
@@ -52,10 +52,7 @@ def loaded_kernels() -> dict[str, list[str]]:
 
 def _stepped(build: object) -> SolverCageCut:
     """The solver of a scene that has made a step, so that all that a step needs is there."""
-    builder = newton.ModelBuilder()
-    SolverCageCut.register_custom_attributes(builder)
-    build(builder)
-    model = builder.finalize()
+    model = built(build).finalize()
     solver = SolverCageCut(model)
     state, other = model.state(), model.state()
     pipeline = newton.CollisionPipeline(model)

@@ -13,6 +13,7 @@ from pathlib import Path
 import newton
 import warp as wp
 
+from ...solver import SolverCageCut
 from .script import loaded_script
 
 Build = Callable[[newton.ModelBuilder], object]
@@ -57,3 +58,25 @@ def build_of(name: str, *, walks: int | None = None) -> Build:
         builder.add_ground_plane()
 
     return build
+
+
+def built(build: Build) -> newton.ModelBuilder:
+    """A builder with the attributes of ``SolverCageCut`` and a scene's bodies.
+
+    Args:
+        build: Adds the bodies.
+    """
+    builder = newton.ModelBuilder()
+    SolverCageCut.register_custom_attributes(builder)
+    build(builder)
+    return builder
+
+
+def definitions_in(builder: newton.ModelBuilder) -> dict[int, object]:
+    """What the bodies of a builder are made of, by their indices; the builder keeps rows in a list or a mapping.
+
+    Args:
+        builder: The builder.
+    """
+    rows = builder.custom_attributes["cagecut:definition"].values or []
+    return dict(rows) if isinstance(rows, dict) else dict(enumerate(rows))

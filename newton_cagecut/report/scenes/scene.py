@@ -97,19 +97,13 @@ def _loaded(name: str, table: Mapping[str, Callable[[], Scene]]) -> Scene:
 
 def _scripted(path: Path) -> Scene:
     """The first cage body that a script builds, cut by its ``blades`` or else across its middle."""
-    import newton
-
-    from ...solver import SolverCageCut
+    from .building import built, definitions_in
 
     module = loaded_script(path)
-    builder = newton.ModelBuilder()
-    SolverCageCut.register_custom_attributes(builder)
-    module.build(builder)
-    bodies = builder.custom_attributes["cagecut:definition"].values or []
-    definitions = list(bodies.values()) if isinstance(bodies, dict) else list(bodies)
+    definitions = definitions_in(built(module.build))
     if not definitions:
         raise ValueError(f"{path}: build(builder) added no cage body; call newton_cagecut.add_cage_body in it")
-    body = definitions[0]
+    body = definitions[min(definitions)]
     blades = tuple(getattr(module, "blades", ())) or (blade_across(body.cage),)
     return PlainScene(path.stem, body.cage, np.asarray(body.surface.points), blades)
 

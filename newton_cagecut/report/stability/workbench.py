@@ -14,6 +14,7 @@ import numpy as np
 from ...cage import Cage
 from ...elastic import Material
 from ...solver import SolverCageCut, add_cage_body
+from ..scenes.building import built, definitions_in
 from .shapes import Blocks, bar, bracket, surface_in
 from .trial import Trial
 
@@ -115,12 +116,9 @@ class Workbench:
             return self.bar(material)
 
         def build() -> Trial:
-            builder = newton.ModelBuilder()
-            SolverCageCut.register_custom_attributes(builder)
-            self.scene(builder)
-            rows = builder.custom_attributes["cagecut:definition"].values
-            for index, definition in list(_items(rows)):
-                rows[index] = replace(definition, material=material)
+            builder = built(self.scene)
+            for index, definition in definitions_in(builder).items():
+                builder.custom_attributes["cagecut:definition"].values[index] = replace(definition, material=material)
             return Trial(builder)
 
         return self._again(material, "scene", build)
@@ -160,8 +158,3 @@ def _trial(
     trial = Trial(builder, collide=ground, strain=strain)
     trial.model.soft_contact_ke = _CONTACT
     return trial
-
-
-def _items(rows: object) -> list[tuple[int, object]]:
-    """Index and value of each row that a builder keeps, in a list or a mapping."""
-    return list(rows.items() if hasattr(rows, "items") else enumerate(rows))
